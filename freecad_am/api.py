@@ -189,6 +189,7 @@ def make_toolpath(
     sequence: str = "feature",
     processes: Sequence[ProcessParameters] = (),
     scan: Any = None,
+    zones: Sequence[Any] = (),
     process: ProcessParameters | None = None,
     fitting: ScanParameters | None = None,
     **values: Any,
@@ -213,6 +214,8 @@ def make_toolpath(
         Process of each feature; only settings that differ from `process` take effect.
     scan : App.DocumentObject, optional
         Scan from `make_scan` to which the first layers are fitted.
+    zones : sequence of App.DocumentObject, optional
+        Closed solids and meshes that settings by place name.
     process : ProcessParameters or None, optional
         Complete process parameters; None for the defaults.
     fitting : ScanParameters or None, optional
@@ -239,6 +242,8 @@ def make_toolpath(
     features = list(feature) if isinstance(feature, (list, tuple)) else [feature]
     main, *later = [*(features or [None]), *checked_list(further, "further")]
     links: dict[str, Any] = {"Feature": main, "Cell": cell, "Scan": scan}
+    if zones:
+        links["Zones"] = checked_list(zones, "zones")
     if later:
         feature_processes = [
             own_process(entry, process or ProcessParameters())

@@ -355,7 +355,7 @@ def write_waypoints(obj: Any, path: str) -> str:
 
     def write(unfinished: str) -> None:
         with open(unfinished, "w", encoding="ascii", newline="") as stream:
-            stream.writelines(waypoints.text(motion, columns, units))
+            stream.writelines(waypoints.text(motion, columns, units, bool(motion.settings.any())))
 
     return _write_whole(path, write)
 

@@ -164,11 +164,11 @@ def test_the_files_of_a_family_are_complete(family):
 
 def test_families_are_asked_in_one_order():
     """Solids come last, because they recognise every part."""
-    from freecad_am.objects.planned.proposed_family import planners
+    from freecad_am.objects.families.registry import ranked_planners
 
-    ranks = [planner.recognition_rank for planner in planners()]
+    ranks = [planner.recognition_rank for planner in ranked_planners()]
     assert len(set(ranks)) == len(ranks) > 0 and ranks == sorted(ranks)
-    assert planners()[-1].proxy[1] == "SolidFeature"
+    assert ranked_planners()[-1].proxy[1] == "SolidFeature"
 
 
 def test_families_without_a_planned_surface_refuse_to_be_compared():

@@ -382,7 +382,8 @@ def _write(
     _, motion = made.as_run(results, cell)
     axes, units = ((), ()) if cell is None else (cell.machine.columns, cell.machine.units)
     with stages.timed("waypoints", session):
-        files.write(outputs.WAYPOINTS, waypoints.text(motion, axes, units))
+        by_place = bool(job.process.settings)
+        files.write(outputs.WAYPOINTS, waypoints.text(motion, axes, units, by_place))
     for name, content in programs.items():
         files.write(f"{outputs.PROGRAMS}/{name}", content)
     with stages.timed("document", session):

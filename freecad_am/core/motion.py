@@ -38,7 +38,9 @@ class Motion:
     of older versions, there is one retract and one approach row between beads, or none with too few
     rows. bead_class: (n,) index in `parameters.bead_classes.CLASSES` for the bead that the row
     belongs or leads to; UNKNOWN by default. phase: (n,) phase, see PHASES. halt: (n,) bool, rows
-    within beads at which the machine stops, for example to reverse; none by default.
+    within beads at which the machine stops, for example to reverse; none by default. settings: (n,)
+    int, settings by place on that segment, as the sum of 2^entry; 0 for rapids and by default. The
+    first row of a bead has those of its first segment.
     """
 
     deposit: Mask
@@ -57,6 +59,7 @@ class Motion:
     bead_class: Integers = None  # type: ignore[assignment]
     phase: Integers = None  # type: ignore[assignment]
     halt: Mask = None  # type: ignore[assignment]
+    settings: Integers = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         n = len(self.deposit)
@@ -66,6 +69,8 @@ class Motion:
             object.__setattr__(self, "phase", np.full(n, MIDDLE))
         if self.halt is None:
             object.__setattr__(self, "halt", np.zeros(n, dtype=bool))
+        if self.settings is None:
+            object.__setattr__(self, "settings", np.zeros(n, dtype=np.int64))
         if self.role is None:
             object.__setattr__(self, "role", _roles(self.deposit))
         if self.wire is None:

@@ -19,7 +19,8 @@ import numpy as np
 from .families.family import Family
 from .families.registry import DEFAULT_KIND, KINDS
 from .geometry.columns import lengths
-from .geometry.curves.outline import Outline, estimate_outline, outline
+from .geometry.curves.outline import Outline, at_points, estimate_outline, outline
+from .geometry.frames import unit
 from .geometry.obstacles import Body
 from .geometry.section import Coverage, Section
 from .geometry.toolpath_records import Fitted, PredictedShape
@@ -213,7 +214,9 @@ class Bead:
     departure from each point, equal except at corners; None if the strategy does not provide them.
     ends: separate speeds at the ends, or None. scarf: shape of the seam of a closed bead, which
     `run_on` applies; on an open bead, the applied shape; or None. external: (n, k) external axis values, rad; None
-    until planned. phase: (n,) segment phases, see `motion.PHASES`; None until planned.
+    until planned. phase: (n,) segment phases, see `motion.PHASES`; None until planned. settings:
+    (n,) settings by place on the segment that ends at the point, as the sum of 2^entry of
+    `process.settings`; None without settings.
     """
 
     points: Array
@@ -231,6 +234,7 @@ class Bead:
     external: Array | None = None
     phase: Array | None = None
     scarf: Scarf | None = None
+    settings: Array | None = None
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -238,7 +242,7 @@ class Bead:
             raise ValueError("a bead has at least two points")
         for name in ("points", "build", "tool"):
             object.__setattr__(self, name, _frozen(getattr(self, name), (n, 3), name))
-        for name in ("parameter", "speed", *PREDICTED, "phase"):
+        for name in ("parameter", "speed", *PREDICTED, "phase", "settings"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, _frozen(getattr(self, name), (n,), name))
         if self.tangents is not None:
@@ -290,6 +294,7 @@ class Bead:
             speed=self.speed[::-1],
             tangents=None if self.tangents is None else -self.tangents[::-1, ::-1],
             external=None if self.external is None else self.external[::-1],
+            settings=None if self.settings is None else np.roll(self.settings[::-1], 1),
             **self._predicted(lambda column: column[::-1]),
         )
 
@@ -306,6 +311,7 @@ class Bead:
             return self
         turn = self.parameter[-1] - self.parameter[0]
         order = np.r_[index:n, 0 : index + 1]
+        segment = np.where(order == 0, n, order)
         parameter = self.parameter[order] + np.where(np.arange(n + 1) >= n - index, turn, 0.0)
         return dataclasses.replace(
             self,
@@ -313,7 +319,8 @@ class Bead:
             build=self.build[order],
             tool=self.tool[order],
             parameter=parameter,
-            speed=self.speed[np.where(order == 0, n, order)],
+            speed=self.speed[segment],
+            settings=None if self.settings is None else self.settings[segment],
             tangents=None if self.tangents is None else self.tangents[order],
             external=self._external_from(index),
             **self._predicted(lambda column: column[order]),
@@ -346,11 +353,11 @@ class Bead:
         """
         return self.divided(segments, np.full(len(segments), 0.5))
 
-    def divided(self, segments: Index, shares: Array) -> Bead:
+    def divided(self, segments: Index, shares: Array, on_chord: bool = False) -> Bead:
         """Return the bead with points added on segments.
 
-        Points are on the bead's smooth curve, not on the chord. Their directions are interpolated
-        between the adjacent points' directions.
+        Points are on the bead's smooth curve, or on the chords, so that the bead keeps its length.
+        Their directions are interpolated between the adjacent points' directions.
 
         Parameters
         ----------
@@ -358,6 +365,8 @@ class Bead:
             Indices of the segments, ascending.
         shares : (k,) array
             Fractions of the segments, ascending on each segment.
+        on_chord : bool, optional
+            Whether points are on the chords.
 
         Returns
         -------
@@ -365,6 +374,7 @@ class Bead:
             The bead with k more points.
         """
         at = segments + 1
+        bead_tangents = self.tangents
 
         def between(column: Array) -> Array:
             share = shares if column.ndim == 1 else shares[:, None]
@@ -378,6 +388,10 @@ class Bead:
             return np.insert(column, at, mean / lengths(mean)[:, None], axis=0)
 
         points, tangents = self.outline.at(segments, shares)
+        if on_chord:
+            points = between(self.points)
+            if bead_tangents is None:  # a point on a chord would bend an estimated curve
+                bead_tangents = at_points(unit(self.outline.leaving), unit(self.outline.arriving))
         return dataclasses.replace(
             self,
             points=np.insert(self.points, at, points, axis=0),
@@ -385,10 +399,13 @@ class Bead:
             tool=inserted_directions(self.tool),
             parameter=inserted(self.parameter),
             speed=np.insert(self.speed, at, self.speed[at]),
+            settings=None
+            if self.settings is None
+            else np.insert(self.settings, at, self.settings[at]),
             **self._predicted(inserted),
             tangents=None
-            if self.tangents is None
-            else np.insert(self.tangents, at, tangents[:, None], axis=0),
+            if bead_tangents is None
+            else np.insert(bead_tangents, at, tangents[:, None], axis=0),
             external=None if self.external is None else inserted(self.external),
         )
 
@@ -422,6 +439,9 @@ class Bead:
             tool=directions(self.tool),
             parameter=np.concatenate([self.parameter, again(self.parameter) + turn]),
             speed=np.concatenate([self.speed, self.speed[1 : count + 1]]),
+            settings=None
+            if self.settings is None
+            else np.concatenate([self.settings, self.settings[1 : count + 1]]),
             closed=False,
             tangents=None if self.tangents is None else self._tangents_run_on(count, tangent),
             external=None
@@ -472,6 +492,24 @@ class Bead:
         """Return the selected rows of each column."""
         columns = [(entry.name, getattr(self, entry.name)) for entry in dataclasses.fields(self)]
         return {name: column[rows] for name, column in columns if isinstance(column, np.ndarray)}
+
+
+def settings_of(bead: Bead) -> Array:
+    """Return the settings by place at the points of a bead, for its rows of a motion.
+
+    Parameters
+    ----------
+    bead : Bead
+        The bead of n points.
+
+    Returns
+    -------
+    (n,) array
+        Sums of 2^entry; the first point has those of the first segment.
+    """
+    if bead.settings is None:
+        return np.zeros(len(bead))
+    return np.asarray(np.r_[bead.settings[1], bead.settings[1:]])
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ from .shapes.containers import broken_link, is_there
 from .shapes.file_links import missing_files
 from .stage_parts import Link, Outcome, Section, Work
 from .staleness import FAILED, INFEASIBLE, STALE, STATUSES, UP_TO_DATE
-from .work import faults, hooks, progress
+from .work import hooks, progress
 
 CLASS_PROPERTY = "StageClass"
 _RESULT = "Result"
@@ -164,7 +164,7 @@ class Stage(Stored):
                 "another computation is running; wait for its end, or cancel it",
             )
         try:
-            with one_thread(), faults.kernel(obj):
+            with one_thread(), progress.kernel_faults(obj):
                 key = self.key(obj)
                 refused = obj.Status != INFEASIBLE and has_errors(
                     issues_of(obj)
@@ -208,7 +208,7 @@ class Stage(Stored):
         work = self.prepare(obj)
 
         def packed() -> tuple[Outcome, list[float], str]:
-            with faults.memory(label):
+            with progress.memory_faults(label):
                 outcome = work()
                 return outcome, *store.pack(outcome.value, key)
 

@@ -17,14 +17,16 @@ from ..core.parameters.scan import ScanParameters
 from ..core.parameters.strategy import RevolutionParameters, SurfaceParameters
 from ..core.process import wire
 from ..core.process.deposit import balance as deposit_balance
+from ..core.strategies.by_place import Zone
 from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ..core.toolpath import Toolpath as CoreToolpath
 from .checks.deposit import check_on_part
 from .families.given import Given
 from .fields import rows
 from .planned.in_sequence import member, planned_in_sequence
-from .planned.toolpaths import in_planes, planned, seen_of, try_remedy
+from .planned.toolpaths import in_planes, planned, seen_of, try_remedy, zones_of
 from .results import fingerprints
+from .results.fingerprints import fingerprint
 from .shapes.bodies import snapshot_of
 from .stage import Stage, stage_of
 from .stage_parts import Link, Outcome, Section, Work
@@ -67,6 +69,13 @@ class Toolpath(Stage):
             "inspection",
             "An inspection with a scan of the substrate, to which the first layers are fitted.",
             required=False,
+        ),
+        Link(
+            "Zones",
+            "",
+            "Closed solids and meshes in which settings by place apply.",
+            required=False,
+            type_name="App::PropertyLinkList",
         ),
     )
     figures = (
@@ -111,8 +120,9 @@ class Toolpath(Stage):
         linked = self.linked(obj)
         features = [linked["Feature"], *linked["Further"]]
         cell = _cell(obj)
+        zones = self.zones(obj, self.parameters(obj, ProcessParameters))
         inputs = [
-            _feature_inputs(feature, process, cell)
+            _feature_inputs(feature, process, cell, zones)
             for feature, process in zip(features, self.processes(obj), strict=True)
         ]
         fixed, look = self.fixed(obj), self._look(obj)
@@ -157,12 +167,12 @@ class Toolpath(Stage):
     def targets(self, obj: Any) -> list[Target]:
         """Return the target of each feature, independent of the document. Raises InputError."""
         features = features_of(obj)
-        cell = _cell(obj)
+        cell, zones = _cell(obj), self.zones(obj, self.parameters(obj, ProcessParameters))
         from .checks.predicted_shape import Target
 
         return [
             Target(
-                _feature_inputs(feature, process, cell),
+                _feature_inputs(feature, process, cell, zones),
                 tuple(map(snapshot_of, _sources(feature))),
                 tuple(feature.Source[1]),
             )
@@ -242,10 +252,10 @@ class Toolpath(Stage):
         if not any(turned):
             return None
         process = self.parameters(obj, ProcessParameters)
-        carried = _cell(obj)
+        carried, zones = _cell(obj), self.zones(obj, process)
         if len(features) > 1:
             inputs_of_features = [
-                _feature_inputs(entry, feature_process, carried)
+                _feature_inputs(entry, feature_process, carried, zones)
                 for entry, feature_process in zip(features, self.processes(obj), strict=True)
             ]
             inputs_of_features = [
@@ -272,10 +282,26 @@ class Toolpath(Stage):
         build, fit = shape.parameters(feature, BuildDirectionParameters), self._fit(obj)
 
         def make() -> CoreToolpath:
-            inputs = _upright(Given(wall(), strategy, build, process, carried))
+            inputs = _upright(Given(wall(), strategy, build, process, carried, zones=zones))
             return planned(inputs) if fit is None else planned(inputs, fit)
 
         return Fixed("`build_direction.mode: fixed`", make)
+
+    def zones(self, obj: Any, process: ProcessParameters) -> tuple[Zone, ...]:
+        """Return the geometry of each setting by place of a process; empty without settings.
+
+        Raises InputError NOT_YET for several features, and the InputErrors of `zones_of`.
+        """
+        if not process.settings:
+            return ()
+        if obj.Further:
+            raise InputError(
+                "NOT_YET",
+                f"{obj.Label}.Settings",
+                "settings by place are for one feature yet; remove them, or put each feature in its "
+                "own job",
+            )
+        return zones_of(process.settings, obj.Zones, obj.Feature.Source[0])
 
     def own_speeds(self, obj: Any) -> tuple[bool, ...]:
         """Return for each of several features whether its travel speed differs from the job's.
@@ -297,7 +323,8 @@ class Toolpath(Stage):
             if feature_process.bead_model != "none"
         ]
         sequence = [obj.Sequence, *obj.FeatureProcess] if obj.Further else []
-        return [*map(repr, models), *sequence]
+        zones = [text for zone in obj.Zones for text in (zone.Name, zone.Label, fingerprint(zone))]
+        return [*map(repr, models), *sequence, *zones]
 
 
 def own_process(process: ProcessParameters, of_job: ProcessParameters) -> str:
@@ -357,14 +384,19 @@ def _cell(obj: Any) -> CellParameters | None:
     return None if obj.Cell is None else seen_of(obj.Cell.Proxy.value(obj.Cell))
 
 
-def _feature_inputs(feature: Any, process: ProcessParameters, cell: CellParameters | None) -> Given:
+def _feature_inputs(
+    feature: Any,
+    process: ProcessParameters,
+    cell: CellParameters | None,
+    zones: tuple[Zone, ...],
+) -> Given:
     shape = stage_of(feature)
     assert shape is not None
     strategy, build = (
         shape.parameters(feature, strategy_of(shape)),
         shape.parameters(feature, BuildDirectionParameters),
     )
-    return Given(shape.value(feature), strategy, build, process, cell)
+    return Given(shape.value(feature), strategy, build, process, cell, zones=zones)
 
 
 def _upright(inputs: Given) -> Given:

@@ -134,10 +134,10 @@ def refuse_schedules(
     if not inside and any(isinstance(block, Schedule) and block.inside for block in program.blocks):
         raise InputError(
             "SCHEDULE",
-            "process.start.schedule",
-            "beads change their schedule, but the controller appears to set outputs before the "
-            "motion reaches the bead; change only the speed at start and end, or use another "
-            "controller",
+            "process.schedule",
+            "beads change their schedule on the way, but the controller appears to set outputs "
+            "before the motion reaches the place; change only the speed at start, end and by "
+            "place, or use another controller",
         )
     numbers = [block.number for block in program.blocks if isinstance(block, Schedule)]
     if numbers and not 1 <= program.schedule_output <= last_output:

@@ -48,7 +48,7 @@ def resolve_job(values: dict[str, Any], folder: str) -> dict[str, Any]:
             values = _changed(values, (*feature, *keys), resolve)
         values = _changed(values, (*feature, "process", "bead_model"), partial(_table, resolve))
         values = _changed(values, (*feature, "process", "material"), partial(_material, resolve))
-    return values
+    return _changed(values, ("settings", ANY_INDEX, "where", "inside", "file"), resolve)
 
 
 def resolve_cell(section: Any, folder: str) -> Any:

@@ -84,6 +84,11 @@
         <translation>Cordons fermés couche par couche, ou une spirale continue.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Closed solids and meshes in which settings by place apply.</source>
+        <translation>Solides et maillages fermés dans lesquels des réglages par lieu s&apos;appliquent.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Compare the joint path with a lower bound over all rotations about the tool axis. Takes up to seconds per bead.</source>
         <translation>Compare la trajectoire articulaire à une borne inférieure sur toutes les rotations autour de l’axe de l’outil. Prend jusqu’à quelques secondes par cordon.</translation>
@@ -927,6 +932,11 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Set of joint limits of the machine file to use.</source>
         <translation>Quel jeu de limites articulaires du fichier machine vaut.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Settings by place; later ones win, and all win over bead classes, such as: layers 0 to 4: travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.</source>
+        <translation>Réglages par lieu ; les suivants l&apos;emportent, et tous l&apos;emportent sur les classes de cordons, comme : layers 0 to 4 : travel_speed 4, schedule 3 ; inside Zone : travel_speed 5 ; ou none.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2300,6 +2310,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Closed form (mm): {}</source>
         <translation>Forme explicite (mm) : {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Closed solids and meshes in which settings by place apply.</source>
+        <translation>Solides et maillages fermés dans lesquels des réglages par lieu s&apos;appliquent.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program_window.py"/>
@@ -5513,6 +5528,16 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Settings</source>
+        <translation>Réglages</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Settings by place; later ones win, and all win over bead classes, such as: layers 0 to 4: travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.</source>
+        <translation>Réglages par lieu ; les suivants l&apos;emportent, et tous l&apos;emportent sur les classes de cordons, comme : layers 0 to 4 : travel_speed 4, schedule 3 ; inside Zone : travel_speed 5 ; ou none.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Settings of bead classes (first_layer, contour, fill, closing, link, wall), such as: contour: travel_speed 8, schedule 3; fill: lead 5; or none.</source>
         <translation>Ce qui diffère pour des classes de cordons (first_layer, contour, fill, closing, link, wall), par exemple : contour : travel_speed 8, schedule 3 ; fill : lead 5 ; ou none.</translation>
     </message>
@@ -7232,6 +7257,11 @@
         <translation>Zéro</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>Zones</source>
+        <translation>Zones</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/view.py"/>
         <source>Zoom into a rectangle; the wheel zooms too, with Ctrl the vertical axis</source>
         <translation>Agrandir un rectangle ; la molette agrandit aussi, avec Ctrl l&apos;axe vertical</translation>
@@ -8228,8 +8258,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>beads change their schedule, but the controller appears to set outputs before the motion reaches the bead; change only the speed at start and end, or use another controller</source>
-        <translation>les cordons changent de programme de soudage, mais la commande semble régler les sorties avant que le mouvement n&apos;atteigne le cordon ; ne changez que la vitesse dans start et end, ou utilisez une autre commande</translation>
+        <source>beads change their schedule on the way, but the controller appears to set outputs before the motion reaches the place; change only the speed at start, end and by place, or use another controller</source>
+        <translation>des cordons changent de programme de soudage en route, mais cette commande semble régler les sorties avant que le mouvement ne les atteigne ; ne changez que la vitesse dans start, end et settings, ou utilisez une autre commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/void_and_double.py"/>
@@ -8877,6 +8907,11 @@
         <translation>des axes externes bougeraient alors que l&apos;instruction ne déplace pas le robot</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>faces and within belong together; give both, such as faces: [Face7], within: 8 mm</source>
+        <translation>faces et within vont ensemble ; donnez les deux, comme faces : [Face7], within : 8 mm</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>faces of the solid do not meet along their edges</source>
         <translation>des faces du solide ne se joignent pas le long de leurs arêtes</translation>
@@ -9285,6 +9320,21 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>iso-parameter layers follow surface lines, but fronts do not; remove strategy.method, or use constant-distance or smooth</source>
         <translation>les couches iso-parameter suivent les lignes de la surface, mais les fronts non ; retirez strategy.method, ou utilisez constant-distance ou smooth</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>it has a box and a solid; give one of them, and cut the solid if both are meant</source>
+        <translation>il y a une boîte et un solide ; donnez l&apos;un des deux, et coupez le solide si les deux sont voulus</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>it has no condition; give layers, height, inside or faces</source>
+        <translation>il n&apos;y a pas de condition ; donnez layers, height, inside ou faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>it sets nothing; give one of {0}</source>
+        <translation>rien n&apos;est réglé ; donnez un de {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
@@ -10328,8 +10378,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program_beads.py"/>
-        <source>only an output can change the schedule within a bead, because calls stop the machine, and arc instructions may stop it too; use output, or remove the schedules of start and end</source>
-        <translation>seule une sortie peut changer le programme de soudage au sein d&apos;un cordon, car les appels arrêtent la machine, et les instructions d&apos;arc peuvent l&apos;arrêter aussi ; utilisez output, ou retirez les programmes de start et end</translation>
+        <source>only an output can change the schedule within a bead, because calls stop the machine, and arc instructions may stop it too; use output, or remove the schedules of start, end and settings</source>
+        <translation>seule une sortie peut changer le programme de soudage au sein d&apos;un cordon : les appels arrêtent la machine, et les instructions d&apos;arc peuvent l&apos;arrêter aussi ; utilisez output, ou retirez les programmes de start, end et settings</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/pictures.py"/>
@@ -10920,6 +10970,21 @@
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
         <source>set strategy.layer_height to {0} mm, or reduce the wire feed</source>
         <translation>réglez strategy.layer_height à {0} mm, ou apportez moins de fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>settings by place are for one feature yet; remove them, or put each feature in its own job</source>
+        <translation>les réglages par lieu ne valent encore que pour un seul élément ; supprimez-les, ou mettez chaque élément dans sa propre tâche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
+        <source>settings by place that change the travel speed cannot be combined with it yet; use strategy.min_layer_time or process.between_layers.wait</source>
+        <translation>des réglages par lieu qui changent la vitesse d&apos;avance ne peuvent pas encore s&apos;y combiner ; utilisez strategy.min_layer_time ou process.between_layers.wait</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/by_place.py"/>
+        <source>settings[{0}] has no effect, because no bead meets its place ({1}); move or enlarge the place, or remove the entry</source>
+        <translation>settings[{0}] n&apos;a pas d&apos;effet, car aucun cordon ne rencontre son lieu ({1}) ; déplacez ou agrandissez le lieu, ou supprimez l&apos;entrée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -11627,7 +11692,7 @@
         <translation>le compresseur fusionnerait des blocs qui indiquent chacun une durée, et seule la dernière compterait</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/work/faults.py"/>
+        <location filename="../../freecad_am/objects/work/progress.py"/>
         <source>the computation needs more memory than available; use larger steps, such as layer height and chord error, or a smaller part</source>
         <translation>la mémoire ne suffit pas pour le calculer ; donnez des pas plus grands, comme la hauteur de couche et l&apos;erreur de corde, ou une pièce plus petite</translation>
     </message>
@@ -14837,6 +14902,11 @@
         <translation>écrivez les décimales avec &apos;{0}&apos;, comme 1{1}5 {2}, et ne groupez pas les chiffres</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>write it as in: layers 0 to 4: travel_speed 4, schedule 3; height 20 to 35 and inside Zone: lead_on 0.5; box 0 0 0 10 20 30: weave 2; faces Face7 Face8 within 8: travel_speed 5</source>
+        <translation>écrivez-le comme dans : layers 0 to 4 : travel_speed 4, schedule 3 ; height 20 to 35 and inside Zone : lead_on 0.5 ; box 0 0 0 10 20 30 : weave 2 ; faces Face7 Face8 within 8 : travel_speed 5</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>write, for example: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5</source>
         <translation>écrivez par exemple : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5</translation>
@@ -15072,6 +15142,11 @@
         <translation>{0} ne peut pas être calculé : l&apos;extension qui a créé l&apos;objet manque ; installez l&apos;extension, ou retirez la valeur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>{0} cannot be named, because it has a colon, a semicolon or the word and; rename the object</source>
+        <translation>{0} ne peut pas être nommé, car il contient deux-points, un point-virgule ou le mot and ; renommez l&apos;objet</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/arrangement.py"/>
         <source>{0} cannot be planned yet; use {1} or {2}</source>
         <translation>{0} ne peut pas encore être planifié ; utilisez {1} ou {2}</translation>
@@ -15095,6 +15170,11 @@
         <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>{0} cannot switch both on and off; give two different words</source>
         <translation>{0} ne peut pas à la fois mettre en marche et arrêter ; donnez deux mots différents</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>{0} cannot vary by place; use one of {1}</source>
+        <translation>{0} ne peut pas varier par lieu ; utilisez un de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
@@ -15237,6 +15317,11 @@
         <translation>{0} arêtes de plus de deux triangles ont été dédoublées, par exemple en {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>{0} entries are too many; use at most {1}, for instance wider ranges of layers</source>
+        <translation>{0} entrées sont trop nombreuses ; utilisez-en au plus {1}, par exemple de plus larges plages de couches</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} exceeds the rounding of a display; give 0 to {1}</source>
         <translation>{0} est plus que ce que laisse l&apos;arrondi d&apos;un affichage ; donnez de 0 à {1}</translation>
@@ -15342,6 +15427,11 @@
         <translation>{0} a une virgule ; écrivez les décimales avec un point, comme {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>{0} has a condition twice; give it once</source>
+        <translation>{0} a une condition deux fois ; donnez-la une fois</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
         <source>{0} has a decimal comma; use a decimal point</source>
         <translation>{0} a une virgule décimale ; écrivez les nombres avec un point</translation>
@@ -15412,6 +15502,11 @@
         <translation>{0} n&apos;a pas de nombre ; ajoutez un nombre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>{0} has no number; {1}</source>
+        <translation>{0} n&apos;a pas de nombre ; {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>{0} has no set of limits {1}; use {2}</source>
         <translation>{0} n&apos;a pas de limites {1} ; utilisez {2}</translation>
@@ -15425,6 +15520,11 @@
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>{0} has no spherical wrist, and the configuration names of its controller are unknown for Cartesian positions; use joint</source>
         <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
+        <source>{0} has no {1}; it has Face1 to Face{2}</source>
+        <translation>{0} n&apos;a pas de {1} ; il a Face1 à Face{2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
@@ -15515,6 +15615,11 @@
         <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0} is a mesh, to be filled</source>
         <translation>{0} est un maillage, qui est rempli</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
+        <source>{0} is a mesh, which has no faces; use a solid, a box or heights</source>
+        <translation>{0} est un maillage, qui n&apos;a pas de faces ; utilisez un solide, une boîte ou des hauteurs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -15732,6 +15837,11 @@
         <translation>{0} n&apos;est pas le coude d&apos;un tore, il n&apos;y a donc pas de plan de symétrie ; donnez la normale comme build_direction.plane, ou utilisez local, layer ou fixed</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>{0} is not a box; give [x0, y0, z0, x1, y1, z1] in mm, the lower corner first</source>
+        <translation>{0} n&apos;est pas une boîte ; donnez [x0, y0, z0, x1, y1, z1] en mm, le coin inférieur d&apos;abord</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/sections/cell.py"/>
         <source>{0} is not a box; give its edges along x, y and z such as [1200, 800, 30]</source>
         <translation>{0} n&apos;est pas un pavé ; donnez ses arêtes selon x, y et z comme [1200, 800, 30]</translation>
@@ -15750,6 +15860,11 @@
         <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
         <source>{0} is not a colour; use red, green and blue from 0 to 1</source>
         <translation>{0} n&apos;est pas une couleur ; donnez rouge, vert et bleu de 0 à 1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>{0} is not a condition; {1}</source>
+        <translation>{0} n&apos;est pas une condition ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -15972,9 +16087,19 @@
         <translation>{0} n&apos;est pas une section ; écrivez des clés sous {1} :</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>{0} is not a setting by place; {1}</source>
+        <translation>{0} n&apos;est pas un réglage par lieu ; {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
         <source>{0} is not a sign; use 1 or -1</source>
         <translation>{0} n&apos;est pas un signe ; utilisez 1 ou -1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
+        <source>{0} is not a solid, so it has no inside; use a closed solid, a closed mesh or a box</source>
+        <translation>{0} n&apos;est pas un solide et n&apos;a donc pas d&apos;intérieur ; utilisez un solide fermé, un maillage fermé ou une boîte</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -16060,6 +16185,11 @@
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>{0} is not a {1}; choose another object</source>
         <translation>{0} n&apos;est pas : {1} ; choisissez un autre objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
+        <source>{0} is not among the zones of the toolpath ({1}); add the object to its property Zones, or name another</source>
+        <translation>{0} n&apos;est pas parmi les zones de la trajectoire d&apos;outil ({1}) ; ajoutez l&apos;objet à sa propriété Zones, ou nommez-en un autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/vectors.py"/>
@@ -16195,6 +16325,11 @@
         <location filename="../../freecad_am/objects/families/developable.py"/>
         <source>{0} is on a cylinder or cone of {1}</source>
         <translation>{0} est sur un cylindre ou cône de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/by_place.py"/>
+        <source>{0} is open, so it has no inside; close it, or use a closed solid or a box</source>
+        <translation>{0} est ouvert et n&apos;a donc pas d&apos;intérieur ; fermez-le, ou utilisez un solide fermé ou une boîte</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/properties.py"/>
@@ -16855,6 +16990,11 @@
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>{0} to {1}</source>
         <translation>{0} à {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>{0} to {1} is not a range; give the lower end first</source>
+        <translation>{0} à {1} n&apos;est pas une plage ; donnez d&apos;abord la borne inférieure</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>

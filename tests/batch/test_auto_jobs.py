@@ -15,7 +15,7 @@ from FreeCAD import Vector
 from freecad_am.batch.job import job as jobs
 from freecad_am.core.issues import InputError
 from freecad_am.objects.families.recognition import SelectedPart
-from freecad_am.objects.planned.proposed_family import propose_family
+from freecad_am.objects.families.registry import propose_family
 from freecad_am.objects.shapes.bodies import Taken
 
 UP = Vector(0, 0, 1)

@@ -11,8 +11,8 @@ from freecad_am import api
 from freecad_am.gui.registry import edit
 from freecad_am.gui.tools.commands import GROUPS
 from freecad_am.objects.families.recognition import SelectedPart
+from freecad_am.objects.families.registry import propose_family
 from freecad_am.objects.job_group import is_group
-from freecad_am.objects.planned.proposed_family import propose_family
 from freecad_am.objects.shapes.bodies import snapshot_of
 from tests.gui.nested_cone import nested_cone
 
@@ -182,7 +182,7 @@ def test_solids_on_a_hub_are_told_from_what_stands_on_what(person, coarse):
 
 
 def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
-    """Family, layers and reason of each shape, as `proposed_family` has them."""
+    """Family, layers and reason of each shape, as `propose_family` has them."""
     doc = App.newDocument("Kinds")
     post = Part.makeBox(20, 20, 40)
     hub = Part.makeCylinder(25, 80)

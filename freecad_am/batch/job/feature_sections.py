@@ -12,19 +12,21 @@ from ...core.families.family import NEEDED, NONE, Family
 from ...core.families.registry import AUTO, DEFAULT_KIND, KINDS, family_of, find_family
 from ...core.geometry.curves.bead_curves import POINT_FILES
 from ...core.geometry.job_files import is_there
-from ...core.issues import InputError
+from ...core.issues import InputError, Word
 from ...core.parameters import bead_classes
 from ...core.parameters import field as f
+from ...core.parameters import settings as by_place
 from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.records import NONE as NO_RECORDS
+from ...core.parameters.settings import Setting
 from ...core.parameters.strategy import LayerParameters
 from ...core.process import wire
 from ...core.process.wire import BUILT_IN, load
 from ...objects.fields import quantities
 from ...sections import fields, tree
 from ...sections.paths import absolute, folder_of
-from .part_source import PartSource, part_of
+from .part_source import PartSource, faces_of, part_of
 
 
 def with_classes(section: dict[str, Any]) -> dict[str, Any]:
@@ -32,6 +34,12 @@ def with_classes(section: dict[str, Any]) -> dict[str, Any]:
 
     Raises InputError naming class and key.
     """
+    if "settings" in section:
+        raise InputError(
+            "UNKNOWN_KEY",
+            "process.settings",
+            "settings by place belong to the whole job; write `settings:` beside `process:`",
+        )
     classes = section.get("classes")
     if classes in (None, {}, [], NO_RECORDS):
         return {key: value for key, value in section.items() if key != "classes"}
@@ -54,6 +62,170 @@ def _bead_class(class_section: Any, name: str) -> bead_classes.BeadClass:
     values = fields.mapping(_flat({} if class_section is None else class_section, name), where)
     fields.known_keys(values, bead_classes.SPECS, where)
     return fields.build(bead_classes.BeadClass, {**values, "name": name}, where)
+
+
+SETTING_KEYS = ("where", *by_place.SECTIONS)
+WHERE_KEYS = ("layers", "height", "inside", "faces", "within")
+
+
+@dataclasses.dataclass(frozen=True)
+class PlaceSettings:
+    """Settings by place, and the solids that they name, by the name in `Setting.inside`."""
+
+    settings: tuple[Setting, ...] = ()
+    solids: tuple[tuple[str, PartSource], ...] = ()
+
+
+def settings_of(section: Any, part_section: Any) -> PlaceSettings:
+    """The settings by place of a job. Raises InputError naming entry, key and what to do."""
+    if section in (None, {}, []):
+        return PlaceSettings()
+    if not isinstance(section, list):
+        raise InputError(
+            "BAD_VALUE",
+            by_place.WHERE,
+            "{} is not a list; write settings: [{{where: {{layers: [0, 4]}}, process: "
+            "{{travel_speed: 4 mm/s}}}}]",
+            quantities.quote(section),
+        )
+    settings: list[Setting] = []
+    solids: dict[PartSource, str] = {}
+    for number, entry in enumerate(section):
+        where = f"{by_place.WHERE}[{number}]"
+        entry = fields.mapping(entry, where)
+        fields.known_keys(entry, SETTING_KEYS, where)
+        if not entry.get("where"):
+            raise InputError(
+                "BAD_VALUE",
+                f"{where}.where",
+                "the place is missing; write where: {{layers: [0, 4]}} or one of {}",
+                ", ".join(WHERE_KEYS[1:]),
+            )
+        values = {
+            **_conditions(
+                fields.mapping(entry["where"], f"{where}.where"), where, part_section, solids
+            ),
+            **_place_values(entry, where),
+        }
+        try:
+            settings.append(Setting(**values))
+        except InputError as error:
+            key = error.where.removeprefix(by_place.WHERE)
+            raise InputError(error.code, f"{where}{key}", error.message) from None
+    by_place.check_number(settings)
+    return PlaceSettings(tuple(settings), tuple((name, source) for source, name in solids.items()))
+
+
+def _place_values(entry: dict[str, Any], where: str) -> dict[str, Any]:
+    """What an entry sets. Raises InputError for keys that cannot vary by place."""
+    values: dict[str, Any] = {}
+    for name, allowed in by_place.SECTIONS.items():
+        if entry.get(name) in (None, {}):
+            continue
+        section = fields.mapping(entry[name], f"{where}.{name}")
+        for key, value in section.items():
+            if key in allowed:
+                kind = by_place.SPECS[key].kind
+                dotted_key = f"{where}.{name}.{key}"
+                # the setting checks numbers
+                values[key] = value if kind == f.COUNT else quantities.read(value, kind, dotted_key)
+                continue
+            raise InputError(
+                "NOT_YET" if key in by_place.FUTURE_KEYS[name] else "UNKNOWN_KEY",
+                f"{where}.{name}.{key}",
+                "{!r} cannot vary by place{}; use one of {}, or set it for the whole job",
+                key,
+                Word(" yet" if key in by_place.FUTURE_KEYS[name] else ""),
+                ", ".join(by_place.VALUE_KEYS),
+            )
+    return values
+
+
+def _conditions(
+    section: dict[str, Any], where: str, part_section: Any, solids: dict[PartSource, str]
+) -> dict[str, Any]:
+    """The conditions of `where` as fields of a setting. solids: names of solids, gains new ones."""
+    key = f"{where}.where"
+    fields.known_keys(section, WHERE_KEYS, key)
+    conditions: dict[str, Any] = {}
+    for name, kind, ends in (
+        ("layers", f.COUNT, ("first_layer", "last_layer")),
+        ("height", f.LENGTH, ("low", "high")),
+    ):
+        if section.get(name) is not None:
+            values = _place_range(section[name], kind, f"{key}.{name}")
+            conditions |= dict(zip(ends, values))
+    if section.get("faces") is not None:
+        conditions["faces"] = faces_of(section["faces"], f"{key}.faces")
+    if section.get("within") is not None:
+        conditions["within"] = quantities.read(section["within"], f.LENGTH, f"{key}.within")
+    if section.get("inside") is not None:
+        conditions |= _inside(section["inside"], f"{key}.inside", part_section, solids)
+    return conditions
+
+
+def _place_range(value: Any, kind: str, key: str) -> list[Any]:
+    """The two ends of a range; None for an open one. Raises InputError BAD_VALUE."""
+    is_layers = kind == f.COUNT
+    if not isinstance(value, list) or len(value) != 2:
+        raise InputError(
+            "BAD_VALUE",
+            key,
+            "{} is not a range; give {}, with null for an open end",
+            quantities.quote(value),
+            Word("[first, last]" if is_layers else "[lower, upper]"),
+        )
+    if value == [None, None]:
+        raise InputError("BAD_VALUE", key, "both ends are open; give at least one, or remove it")
+    if is_layers:
+        for end in value:
+            if end is not None and (isinstance(end, bool) or not isinstance(end, int) or end < 0):
+                raise InputError(
+                    "BAD_VALUE",
+                    key,
+                    "{} is not the number of a layer; give a whole number from 0",
+                    quantities.quote(end),
+                )
+        return value
+    return [None if end is None else quantities.read(end, kind, key) for end in value]
+
+
+def _inside(
+    value: Any, key: str, part_section: Any, solids: dict[PartSource, str]
+) -> dict[str, Any]:
+    """The condition `inside`: a box, or a solid of a file or of the part's document."""
+    section = fields.mapping(value, key)
+    fields.known_keys(section, ("box", "file", "object", "scale"), key)
+    if "box" in section:
+        if len(section) > 1:
+            raise InputError(
+                "BAD_VALUE",
+                key,
+                "it has a box and a solid; give one of them, in two entries if both",
+            )
+        box = section["box"]
+        if not isinstance(box, list) or len(box) != 6:
+            raise InputError(
+                "BAD_VALUE",
+                f"{key}.box",
+                "{} is not a box; give [x0, y0, z0, x1, y1, z1]",
+                quantities.quote(box),
+            )
+        return {"box": tuple(quantities.read(end, f.LENGTH, f"{key}.box") for end in box)}
+    source_section = dict(section)
+    if "file" not in section:
+        part_values = part_section if isinstance(part_section, dict) else {}
+        source_section["file"] = part_values.get("file", "")
+        if part_values.get("set"):
+            source_section["set"] = part_values["set"]
+        if not str(source_section["file"]).lower().endswith(".fcstd"):
+            raise InputError(
+                "BAD_VALUE",
+                f"{key}.object",
+                "only an FCStd part has objects; give a file or a box",
+            )
+    source = part_of(source_section, key)
+    return {"inside": solids.setdefault(source, f"zone {len(solids)}")}
 
 
 def _flat(class_section: Any, name: str) -> Any:

@@ -25,6 +25,7 @@ from .feature_sections import (
     kept_clear,
     process_of,
     refuse_direction,
+    settings_of,
     strategy_of,
     substrate_of,
 )
@@ -130,6 +131,8 @@ class JobFeature:
     sections: Any = dataclasses.field(default=None, repr=False, compare=False)
     start_faces: tuple[str, ...] = ()
     scan: ScanSource | None = None
+    # solids that settings by place name
+    zones: tuple[tuple[str, PartSource], ...] = ()
 
 
 def one_feature(values: dict[str, Any], name: str) -> JobFeature:
@@ -147,7 +150,10 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
     if isinstance(section, dict) and section.get("kind") == AUTO.kind:
         return _left_open(values, section, name)
     strategy = strategy_of(_add_fuse(values.get("strategy") or {}, part_section))
-    process = process_of(values.get("process") or {}, strategy)
+    by_place = settings_of(values.get("settings"), part_section)
+    process = dataclasses.replace(
+        process_of(values.get("process") or {}, strategy), settings=by_place.settings
+    )
     if SPACING not in (values.get("strategy") or {}):
         strategy = _narrow_spacing(strategy, process)
     build_direction = fields.build(
@@ -184,6 +190,7 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
         guide,
         start_faces=start_faces,
         scan=scan_of(scanned, strategy),
+        zones=by_place.solids,
     )
 
 
@@ -224,7 +231,10 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str) -> Jo
         fields.build(
             BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"
         ),
-        process_of(values.get("process") or {}),
+        dataclasses.replace(
+            process_of(values.get("process") or {}),
+            settings=settings_of(values.get("settings"), part_section).settings,
+        ),
         sections=values,
     )
 
@@ -281,6 +291,13 @@ def _keys(family: Family) -> tuple[str, ...]:
 
 def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
     """Convert the features listed in a job file. Raises InputError naming feature and key."""
+    if values.get("settings"):
+        raise InputError(
+            "NOT_YET",
+            "settings",
+            "settings by place are for one feature yet; remove them, or put each feature in its own "
+            "job",
+        )
     entries = values["features"]
     if not isinstance(entries, list) or not entries:
         raise InputError(

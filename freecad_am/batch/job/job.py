@@ -43,6 +43,7 @@ SECTIONS = (
     "cell",
     "joints",
     "process",
+    "settings",
     "program",
     "place",
 )

@@ -20,6 +20,7 @@ from ...core.families.registry import family_of
 from ...core.geometry.mesh.file_unit import MESHES
 from ...core.issues import NOTE, InputError, Issue, Text
 from ...core.parameters.inspection import NONE as AS_MEASURED
+from ...core.parameters.process import ProcessParameters
 from ...objects.shapes import linked_files
 from ...objects.shapes.bodies import snapshot_of
 from ...objects.shapes.part_file import add_part, changed_part
@@ -270,7 +271,7 @@ class Shapes:
             return None
         from freecad_am.core.parameters.filled import GEODESIC, PLANES
         from freecad_am.objects.families.recognition import SelectedPart  # its imports take long
-        from freecad_am.objects.planned.proposed_family import propose_family
+        from freecad_am.objects.families.registry import propose_family
 
         ground = (
             next(iter(self._touching_parts(earlier)), None)
@@ -424,8 +425,15 @@ def toolpath_of(job: Job, document: Any, features: Sequence[Any], cell: Any, sca
             if scan is None or job.features[0].scan is None
             else job.features[0].scan.parameters
         )
+        process, zones = _bring_zones(document, job)
         return api.make_toolpath(
-            document, features[0], cell, process=job.process, scan=scan, fitting=fitting
+            document,
+            features[0],
+            cell,
+            process=process,
+            scan=scan,
+            fitting=fitting,
+            zones=zones,
         )
     return api.make_toolpath(
         document,
@@ -435,6 +443,21 @@ def toolpath_of(job: Job, document: Any, features: Sequence[Any], cell: Any, sca
         process=job.process,
         processes=[feature.process for feature in job.features],
     )
+
+
+def _bring_zones(document: Any, job: Job) -> tuple[ProcessParameters, list[Any]]:
+    """The process with settings by place that name objects of the document, and these objects."""
+    objects: dict[str, Any] = {}
+    for name, source in job.features[0].zones:
+        number = next(k for k, setting in enumerate(job.process.settings) if setting.inside == name)
+        objects[name] = bring(document, source, f"settings[{number}].where.inside", meshes=True)
+        if getattr(objects[name], "ViewObject", None) is not None:
+            objects[name].ViewObject.Visibility = False
+    settings = tuple(
+        replace(setting, inside=objects[setting.inside].Name) if setting.inside else setting
+        for setting in job.process.settings
+    )
+    return replace(job.process, settings=settings), list(objects.values())
 
 
 def _has_shape(obj: Any) -> bool:

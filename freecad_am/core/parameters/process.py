@@ -10,8 +10,10 @@ from typing import Any
 
 from . import bead_classes
 from . import field as f
+from . import settings as by_place
 from .bead_classes import BeadClass, BeadEnd, BeadStart
 from .records import Point, convert_texts
+from .settings import Setting
 from .vectors import direction_text, point_text
 
 # what each of several features may have of its own, with _ for nested keys; the rest holds for the whole program
@@ -333,6 +335,14 @@ class ProcessParameters:
         records=bead_classes.BEAD_CLASSES,
     )
 
+    settings: tuple[Setting, ...] = f.parameter(
+        (),
+        f.RECORDS,
+        "Settings by place; later ones win, and all win over bead classes, such as: layers 0 to 4: "
+        "travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.",
+        records=by_place.SETTINGS,
+    )
+
     weave: int | None = f.parameter(
         None,
         f.COUNT,
@@ -359,6 +369,7 @@ class ProcessParameters:
         convert_texts(self)
         f.check(self, "process")
         bead_classes.check_twice(self.classes)
+        by_place.check_number(self.settings)
 
     def of_class(self, name: str) -> BeadClass:
         """Return the own settings of a bead class; none for a class that is not listed."""
@@ -379,10 +390,33 @@ class ProcessParameters:
                 mine[phase] = dataclasses.replace(getattr(self, phase), **ends)  # type: ignore[arg-type]
         return dataclasses.replace(self, **mine) if mine else self
 
+    def at_place(self, name: str, active: int) -> ProcessParameters:
+        """Return the process for beads of a class where settings by place hold.
+
+        Parameters
+        ----------
+        name : str
+            Name of the class.
+        active : int
+            Sum of 2^entry of the settings that hold; 0 for none.
+
+        Returns
+        -------
+        ProcessParameters
+            The process of the class, with the values of the settings; later ones win.
+        """
+        values: dict[str, Any] = {}
+        # a motion that is stale may have more of them
+        for number in by_place.entries_of(active & (1 << len(self.settings)) - 1):
+            values |= self.settings[number].own_values()
+        process = self.for_class(name)
+        return dataclasses.replace(process, **values) if values else process
+
     @property
     def weaves(self) -> bool:
         """Return whether any bead uses a weave of the controller."""
-        return any((self.weave, *(bead_class.weave for bead_class in self.classes)))
+        by_class = (bead_class.weave for bead_class in self.classes)
+        return any((self.weave, *by_class, *(setting.weave for setting in self.settings)))
 
     @property
     def ramped(self) -> bool:
@@ -395,7 +429,8 @@ class ProcessParameters:
     def scheduled(self) -> bool:
         """Whether any bead has a schedule."""
         keys = ("schedule", "start_schedule", "end_schedule")
-        ends = (self.schedule, self.start.schedule, self.end.schedule)
+        by_place = (setting.schedule for setting in self.settings)
+        ends = (self.schedule, self.start.schedule, self.end.schedule, *by_place)
         return any(schedule is not None for schedule in ends) or any(
             key in bead_class.own_values() for bead_class in self.classes for key in keys
         )

@@ -16,6 +16,7 @@ from ..parameters.bead_classes import number_of
 from ..parameters.joints import JointParameters
 from ..parameters.process import ProcessParameters
 from ..program import SHORTEST_RAPID
+from ..toolpath import settings_of
 from ..types import Array, Integers
 from . import nozzle_obstacles
 from .arm_clearance import Cylinders
@@ -46,6 +47,7 @@ class _Rows:
     wire: Array
     phase: Array
     halt: Array
+    settings: Array
 
 
 def assemble(
@@ -133,7 +135,19 @@ def _rapid(path: BeadPath, rapid: Way, onto: Leg | None, cell: Cell) -> _Rows:
     build[-1] = path.bead.build[0]
     none, zero = np.full(len(joints), np.nan), np.zeros(len(joints))
     return _Rows(
-        rapid.role, *_place(path), position, build, tool, none, none, joints, none, none, zero, zero
+        rapid.role,
+        *_place(path),
+        position,
+        build,
+        tool,
+        none,
+        none,
+        joints,
+        none,
+        none,
+        zero,
+        zero,
+        zero,
     )
 
 
@@ -155,6 +169,7 @@ def _retract(path: BeadPath, rapid: Way, leg: Leg | None) -> _Rows:
         rapid.joints,
         none,
         none,
+        zero,
         zero,
         zero,
     )
@@ -179,6 +194,7 @@ def _deposit(path: BeadPath) -> _Rows:
         wire,
         np.zeros(len(bead)) if bead.phase is None else bead.phase,
         turns_back(bead),
+        settings_of(bead),
     )
 
 
@@ -220,4 +236,5 @@ def _join_rows(row_groups: Sequence[_Rows], cell: Cell, process: ProcessParamete
         role=columns["role"],
         phase=np.nan_to_num(columns["phase"]).astype(np.int64),
         halt=columns["halt"] > 0.0,
+        settings=columns["settings"].astype(np.int64),
     )

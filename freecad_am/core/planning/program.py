@@ -45,7 +45,7 @@ from ..toolpath import Toolpath
 from ..types import Array, Integers, Mask
 from . import linear_approach
 from .joint_path import BeadPath
-from .program_beads import ARC, deposited, split_by_schedule, standing
+from .program_beads import ARC, deposited, divide, standing
 
 
 def frames_of(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:
@@ -434,14 +434,10 @@ class _Blocks:
 
     def _bead(self, number: int, rows: Integers) -> list[Block]:
         """Return the blocks of bead group `number`, including deposit switching."""
-        kind = _class_of(self.motion, int(rows[0]))
-        runs_by_schedule = split_by_schedule(
-            self.motion.phase[rows[1:]], self.process.for_class(kind)
-        )
-        runs = [
-            (self._moves(rows[1:][segment_rows], DEPOSIT), number)
-            for segment_rows, number in runs_by_schedule
-        ]
+        kind, rows = _class_of(self.motion, int(rows[0])), rows[1:]
+        motion = self.motion
+        sections = divide(motion.phase[rows], motion.settings[rows], kind, self.process)
+        runs = [(self._moves(rows[section.rows], DEPOSIT), section) for section in sections]
         return deposited(runs, kind, self.process, self.parameters)
 
     def _approach(

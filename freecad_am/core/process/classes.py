@@ -64,7 +64,7 @@ def leaning(
 
 
 def refuse_speeds(process: ProcessParameters) -> None:
-    """Raise InputError NOT_FOR_FAMILY if classes set travel speeds although a bead model sets them."""
+    """Raise InputError NOT_FOR_FAMILY if classes or places set speeds although a bead model does."""
     speed_keys = ("travel_speed", "start_travel_speed", "end_travel_speed")
     named = [
         f"process.classes.{name}"
@@ -73,6 +73,11 @@ def refuse_speeds(process: ProcessParameters) -> None:
     ]
     named += [
         f"process.{end}" for end in (START, END) if getattr(process, end).travel_speed is not None
+    ]
+    named += [
+        f"settings[{number}].process"
+        for number, setting in enumerate(process.settings)
+        if setting.travel_speed is not None
     ]
     if named and process.bead_model != "none":
         raise InputError(

@@ -15,6 +15,8 @@ from ..toolpath import Layer, Toolpath
 from ..types import Array
 from .bead_order import Course
 
+WAITS = "WAITS"
+
 
 def add_waits(
     course: Course, wait: float, rapid_speed: float, min_layer_time: float = 0.0
@@ -97,7 +99,7 @@ def enforce_layer_time(toolpath: Toolpath, min_layer_time: float, rapid_speed: f
         [
             Issue(
                 NOTE,
-                "WAITS",
+                WAITS,
                 Text(
                     "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in "
                     "total, so that every layer takes at least {:g} s",
@@ -113,3 +115,14 @@ def enforce_layer_time(toolpath: Toolpath, min_layer_time: float, rapid_speed: f
         else []
     )
     return dataclasses.replace(toolpath, layers=layers, issues=(*toolpath.issues, *text))
+
+
+def remove_waits(toolpath: Toolpath) -> Toolpath:
+    """Return the toolpath without waits before layers, and without notes about them."""
+    if not any(layer.wait for layer in toolpath.layers):
+        return toolpath
+    return dataclasses.replace(
+        toolpath,
+        layers=tuple(dataclasses.replace(layer, wait=0.0) for layer in toolpath.layers),
+        issues=tuple(issue for issue in toolpath.issues if issue.code != WAITS),
+    )

@@ -16,7 +16,8 @@ from ..issues import WARNING, InputError, Issue, Text, Word
 from ..motion import AT_END, AT_START, MIDDLE
 from ..parameters.bead_classes import CLASSES
 from ..parameters.process import ProcessParameters
-from ..toolpath import Bead, Toolpath
+from ..parameters.settings import entries_of
+from ..toolpath import Bead, Toolpath, settings_of
 from ..types import Array
 from .bead_model import MINUTE, BeadModel, fit, row_name
 
@@ -24,9 +25,10 @@ _KEYS = {MIDDLE: "", AT_START: ".start", AT_END: ".end"}
 
 
 class Taken(NamedTuple):
-    """Deposition rate of the beads of one class in one phase.
+    """Deposition rate of the beads of one class in one phase, with the same settings by place.
 
-    phase: one of PHASES. rate: mm3/s. layer, bead: indices of the first occurrence. section: mean cross-section, mm2.
+    phase: one of PHASES. rate: mm3/s. layer, bead: indices of the first occurrence. section: mean
+    cross-section, mm2. settings: sum of 2^entry.
     """
 
     bead_class: str
@@ -35,24 +37,30 @@ class Taken(NamedTuple):
     layer: int
     bead: int
     section: float
+    settings: int = 0
 
     @property
     def name(self) -> str:
-        """Name in terms of job keys: contour, contour.start, contour.end."""
-        return f"{self.bead_class or 'all'}{_KEYS[self.phase]}"
+        """Name in terms of job keys: contour, contour.start, contour.end, contour settings[0]."""
+        suffix = f" settings{entries_of(self.settings)}" if self.settings else ""
+        return f"{self.bead_class or 'all'}{_KEYS[self.phase]}{suffix}"
 
 
-def by_wire(taken: Taken, process: ProcessParameters) -> bool:
+def by_wire(rate_of_class: Taken, process: ProcessParameters) -> bool:
     """Whether process.wire sets the feed of a class and phase, rather than a separate schedule."""
-    class_process = process.for_class(taken.bead_class)
-    phase = {AT_START: class_process.start, AT_END: class_process.end}.get(taken.phase)
+    class_process = process.at_place(rate_of_class.bead_class, rate_of_class.settings)
+    phase = {AT_START: class_process.start, AT_END: class_process.end}.get(rate_of_class.phase)
     schedule = class_process.schedule if phase is None or phase.schedule is None else phase.schedule
     return schedule == process.schedule
 
 
 def by_schedules(toolpath: Toolpath, process: ProcessParameters) -> list[str]:
     """Return the names of classes and phases with a separate schedule, whose feed is unknown."""
-    return [taken.name for taken in taken_of(toolpath) if not by_wire(taken, process)]
+    return [
+        rate_of_class.name
+        for rate_of_class in taken_of(toolpath)
+        if not by_wire(rate_of_class, process)
+    ]
 
 
 def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int, int] | None:
@@ -73,7 +81,9 @@ def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int
         Deviation, layer and bead; None if wire feed or bead width is unknown.
     """
     wire_rate = (toolpath.wire_feed or 0.0) * process.wire.section
-    by_wire_ = [taken for taken in taken_of(toolpath) if by_wire(taken, process)]
+    by_wire_ = [
+        rate_of_class for rate_of_class in taken_of(toolpath) if by_wire(rate_of_class, process)
+    ]
     if not by_wire_ or wire_rate == 0.0:
         return None
     follows = follows_speed(toolpath)  # mm3 per mm
@@ -82,16 +92,16 @@ def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int
             (
                 abs(
                     (
-                        wire_rate / process.travel_speed / taken.section
+                        wire_rate / process.travel_speed / rate_of_class.section
                         if follows
-                        else wire_rate / taken.rate
+                        else wire_rate / rate_of_class.rate
                     )
                     - 1.0
                 ),
-                taken.layer,
-                taken.bead,
+                rate_of_class.layer,
+                rate_of_class.bead,
             )
-            for taken in by_wire_
+            for rate_of_class in by_wire_
         ),
         key=lambda deviation: deviation[0],
     )
@@ -109,24 +119,24 @@ def taken_of(toolpath: Toolpath) -> list[Taken]:
     """
     if toolpath.bead_width is None:
         return []
-    sums: dict[tuple[str, int], Array] = {}
-    first_bead: dict[tuple[str, int], tuple[int, int]] = {}
+    sums: dict[tuple[str, int, int], Array] = {}
+    first_bead: dict[tuple[str, int, int], tuple[int, int]] = {}
     for layer, number, bead in toolpath:
-        for phase, sum_ in _sums(
+        for (phase, active), sum_ in _sums(
             bead, toolpath.bead_width * toolpath.layer_height, toolpath
         ).items():
-            key = bead.role.bead_class, phase
+            key = bead.role.bead_class, phase, active
             sums[key] = sums.get(key, np.zeros(3)) + sum_
             first_bead.setdefault(key, (layer, number))
     return [
-        Taken(*key, float(volume / time), *first_bead[key], float(volume / length))
+        Taken(*key[:2], float(volume / time), *first_bead[key], float(volume / length), key[2])
         for key, (volume, time, length) in sums.items()
         if time > 0.0
     ]
 
 
-def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[int, Array]:
-    """Return volume, mm3, time, s, and length, mm, (3,) of a bead by phase.
+def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[tuple[int, int], Array]:
+    """Return volume, mm3, time, s, and length, mm, (3,) of a bead by phase and settings by place.
 
     Before the phase of each segment is planned, they are derived from the lengths of the bead ends.
     """
@@ -139,12 +149,19 @@ def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[int, Array]:
         )
         section = 0.5 * (area[1:] + area[:-1])
     amounts = np.stack([section * length, length / bead.speed[1:], length])
-    if bead.phase is not None:
+    if bead.phase is not None or bead.settings is not None:
+        phases = np.full(len(length), MIDDLE) if bead.phase is None else bead.phase[1:].astype(int)
+        kinds = np.stack([phases, settings_of(bead)[1:].astype(int)])
         return {
-            phase: amounts[:, bead.phase[1:] == phase].sum(axis=1)
-            for phase in sorted(set(bead.phase[1:].astype(int)))
+            (phase, active): amounts[:, (kinds[0] == phase) & (kinds[1] == active)].sum(axis=1)
+            for phase, active in np.unique(kinds, axis=1).T.tolist()
         }
-    total = amounts.sum(axis=1)
+    return {(phase, 0): sum_ for phase, sum_ in _sums_before_planning(bead, amounts).items()}
+
+
+def _sums_before_planning(bead: Bead, amounts: Array) -> dict[int, Array]:
+    """Return the sums of `_sums` by phase of a bead without phases. amounts: (3, n) of its segments."""
+    total, length = amounts.sum(axis=1), amounts[2]
     ends = bead.ends
     if ends is None:
         return {MIDDLE: total}
@@ -291,13 +308,14 @@ def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     if wire_rate == 0.0 or not _at_other_speeds(process) or follows_speed(toolpath):
         return toolpath
     off = [
-        taken
-        for taken in taken_of(toolpath)
-        if by_wire(taken, process) and abs(wire_rate - taken.rate) > TOLERANCE * taken.rate
+        rate_of_class
+        for rate_of_class in taken_of(toolpath)
+        if by_wire(rate_of_class, process)
+        and abs(wire_rate - rate_of_class.rate) > TOLERANCE * rate_of_class.rate
     ]
     if not off:
         return toolpath
-    text = ", ".join(f"{taken.name} {taken.rate:.4g}" for taken in off)
+    text = ", ".join(f"{rate_of_class.name} {rate_of_class.rate:.4g}" for rate_of_class in off)
     return replace(
         toolpath,
         issues=(
@@ -323,6 +341,8 @@ def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
 def _at_other_speeds(process: ProcessParameters) -> bool:
     """Whether any class or phase has a separate travel speed."""
     named = [process, *(process.for_class(name) for name in CLASSES)]
+    if any(setting.travel_speed is not None for setting in process.settings):
+        return True
     return any(
         settings.travel_speed != process.travel_speed or settings.start.there or settings.end.there
         for settings in named

@@ -16,7 +16,7 @@ import numpy as np
 from ..motion import Motion
 from ..parameters.bead_classes import CLASSES, number_of
 from ..parameters.process import ProcessParameters
-from ..toolpath import Toolpath
+from ..toolpath import Toolpath, settings_of
 from ..types import Array, ArrayLike, Integers, Mask
 
 
@@ -133,6 +133,7 @@ def deposit_motion(toolpath: Toolpath, axes: int = 0) -> Motion:
             ]
         ),
         bead_class=np.repeat([number_of(bead.role.bead_class) for _, _, bead in beads], sizes),
+        settings=np.concatenate([settings_of(bead) for _, _, bead in beads]).astype(np.int64),
     )
 
 
@@ -260,21 +261,25 @@ def timeline(motion: Motion, process: ProcessParameters, waits: Sequence[float] 
     if n:
         is_start = motion.deposit & (motion.point == 0)
         is_end = motion.deposit & np.append(~motion.deposit[1:] | is_start[1:], True)
-        of_class = [
-            process.for_class(name) for name in (*CLASSES, "")
-        ]  # the last entry is for beads without a class
-        lit[is_start] += np.array([parameters.lead_on for parameters in of_class])[
-            motion.bead_class[is_start]
-        ]
-        lit[is_end] += np.array([parameters.lead_off for parameters in of_class])[
-            motion.bead_class[is_end]
-        ]
+        lit[is_start] += _values_at(motion, process, is_start, "lead_on")
+        lit[is_end] += _values_at(motion, process, is_end, "lead_off")
         dark = _between_layers(motion, process, waits)
     steps = np.nan_to_num(motion.duration)
     stay = lit + dark
     arrive = np.cumsum(steps) + np.cumsum(stay) - stay
     starts = np.flatnonzero(np.diff(motion.layer, prepend=-1)) if n else np.zeros(0, dtype=np.int64)
     return Timeline(motion, arrive, arrive + stay, lit, motion.layer[starts], starts)
+
+
+def _values_at(motion: Motion, process: ProcessParameters, rows: Mask, key: str) -> Array:
+    """Return a value of the process at rows, by their bead class and settings by place."""
+    kinds = np.stack([motion.bead_class[rows], motion.settings[rows]])
+    distinct, index = np.unique(kinds, axis=1, return_inverse=True)
+    names = (*CLASSES, "")  # the last entry is for beads without a class
+    values = [
+        getattr(process.at_place(names[name], active), key) for name, active in distinct.T.tolist()
+    ]
+    return np.asarray(np.array(values, dtype=float)[np.ravel(index)])
 
 
 def _between_layers(motion: Motion, process: ProcessParameters, waits: Sequence[float]) -> Array:

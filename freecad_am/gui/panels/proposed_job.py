@@ -28,9 +28,9 @@ from ...objects.checks import deposit
 from ...objects.checks.collisions import ARM_NEAR, LOW_MARGIN
 from ...objects.families.developable import stands_on_hub
 from ...objects.families.recognition import Proposal, SelectedPart
+from ...objects.families.registry import propose_family
 from ...objects.fields import preferences, saved_cells
 from ...objects.fields.rows import Row, is_expression, name_for, refusal, rows
-from ...objects.planned.proposed_family import propose_family
 from ...objects.results.findings import issues_of
 from ...objects.shapes.bodies import Taken, snapshot_of
 from ...objects.staleness import FAILED, INFEASIBLE, STALE, UP_TO_DATE

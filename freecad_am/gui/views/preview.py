@@ -12,7 +12,7 @@ import FreeCADGui as Gui
 
 from ...objects.stage import Stage
 from ...objects.stage_parts import Work
-from ...objects.work import faults
+from ...objects.work import progress
 
 NAME = "RoboticAM_Preview"
 _VIEW = "Gui::View3DInventor"
@@ -51,7 +51,7 @@ class Draft:
         """Wrap a preview's work to report lack of memory and kernel faults as the stage does."""
 
         def run_guarded() -> T:
-            with faults.kernel(self.obj), faults.memory(self.obj.Label):
+            with progress.kernel_faults(self.obj), progress.memory_faults(self.obj.Label):
                 return work()
 
         return run_guarded

@@ -12,6 +12,7 @@ from ...core.parameters.cell import CellParameters, NozzleParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.process import wire
 from ...core.process.bead_model import BeadModel
+from ...core.strategies.by_place import Zone
 from ...core.toolpath import Toolpath
 from ...core.types import Array
 
@@ -22,6 +23,7 @@ class Given:
 
     wall: result of the feature object, a wall or solids. cell: cell reduced by `seen_of`. stands:
     frame (4, 4) on the platform in part coordinates if an earlier feature sets it, else None.
+    zones: geometry of each of the process's settings by place; empty if none has any.
     """
 
     wall: Any
@@ -30,6 +32,7 @@ class Given:
     process: ProcessParameters
     cell: CellParameters | None
     stands: Array | None = None
+    zones: tuple[Zone, ...] = ()
 
     @property
     def nozzle(self) -> NozzleParameters:

@@ -7,24 +7,33 @@ import dataclasses
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from ...brep.kernel.process import in_kernel_process
+from ...brep.shapes.tessellate import tessellated
 from ...core.families.registry import family_of
+from ...core.geometry.frames import unit
 from ...core.geometry.obstacles import Body
 from ...core.issues import ERROR, NOTE, AmError, InputError, Issue, Text, has_errors
 from ...core.kinematics.cell import mounted
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.filled import PLANES
+from ...core.parameters.settings import WHERE, Setting
 from ...core.process import classes, model_notes, seams
 from ...core.process.bead_model import check_speeds
-from ...core.process.cooling_waits import enforce_layer_time
+from ...core.process.cooling_waits import enforce_layer_time, remove_waits
 from ...core.process.deposit.pieces import deposited_twice
 from ...core.process.wire import set_wire_feed
 from ...core.strategies import support
+from ...core.strategies.by_place import Zone, apply_settings
 from ...core.strategies.clearance.nozzle_check import CLEARANCE
 from ...core.toolpath import MotionRules, Toolpath
 from ...core.toolpath import Toolpath as CoreToolpath
+from ...core.types import Array
 from ..families.given import Given, platform_frame
 from ..families.planner import CHECKED, CLEARING, STRATEGY
 from ..families.registry import planner_for, planner_of
+from ..shapes.bodies import global_shape, is_mesh, snapshot_of
 from ..shapes.cell_obstacles import platforms
 from ..work import progress
 
@@ -130,8 +139,10 @@ def layers_of(inputs: Given) -> CoreToolpath:
     )
     if model is not None and not family.is_filled:
         layers = model_notes.hold_widths(layers, process, model)
+    layers = apply_settings(layers, process, inputs.zones, stacking_direction(layers, inputs))
     toolpath = seams.set_scarfs(classes.set_bead_ends(layers, process), process)
-    if not family.is_filled:
+    if not family.is_filled or _waits_by_speed(inputs):
+        toolpath = remove_waits(toolpath)
         toolpath = enforce_layer_time(
             toolpath, getattr(inputs.strategy, "min_layer_time", 0.0), process.rapid_speed
         )
@@ -140,6 +151,33 @@ def layers_of(inputs: Given) -> CoreToolpath:
         toolpath.add_checks(twice=twice),
         rules=MotionRules(process.overlap, process.retreat, inputs.build.max_from_vertical),
     )
+
+
+def _waits_by_speed(inputs: Given) -> bool:
+    """Return whether the waits of a filled feature must be found again, at the speeds of places.
+
+    Raises InputError NOT_YET for a wait between visits to a solid.
+    """
+    if all(setting.travel_speed is None for setting in inputs.process.settings):
+        return False
+    if getattr(inputs.strategy, "wait", 0.0) > 0.0:
+        raise InputError(
+            "NOT_YET",
+            "strategy.wait",
+            "settings by place that change the travel speed cannot be combined with it yet; use "
+            "strategy.min_layer_time or process.between_layers.wait",
+        )
+    return getattr(inputs.strategy, "min_layer_time", 0.0) > 0.0
+
+
+def stacking_direction(toolpath: CoreToolpath, inputs: Given) -> Array:
+    """Return the direction (3,) in which the layers of a feature are stacked, part coordinates."""
+    groups = getattr(inputs.wall, "groups", ())
+    if groups:
+        base = groups[0].base if inputs.wall.has_plane_layers() else None
+        return np.asarray(toolpath.frame[:3, 2] if base is None else base.frame[:3, 2])
+    direction = getattr(inputs.strategy, "direction", None)  # of curves
+    return np.asarray(toolpath.frame[:3, 2] if direction is None else unit(np.array(direction)))
 
 
 def kept_clear(
@@ -226,3 +264,100 @@ def try_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
         )
     )
     return dataclasses.replace(toolpath, issues=(note, *toolpath.issues))
+
+
+# ---- Geometry of settings by place: solids of the document, and faces of the part
+
+CHORD_MM = 0.01  # mm; largest distance of the triangles from curved faces
+
+
+def zones_of(settings: Sequence[Setting], objects: Sequence[Any], source: Any) -> tuple[Zone, ...]:
+    """Return the geometry of each setting, in document coordinates.
+
+    Parameters
+    ----------
+    settings : sequence of Setting
+        The settings.
+    objects : sequence of App.DocumentObject
+        The objects that `inside` may name, by name or label.
+    source : App.DocumentObject
+        The part with the faces.
+
+    Returns
+    -------
+    tuple of Zone
+        A zone for each setting; without geometry if it has none.
+
+    Raises
+    ------
+    InputError
+        NO_OBJECT, NO_FACES or NO_SHAPE, naming the setting.
+    """
+    solids: dict[str, Body] = {}
+    zones = []
+    for number, setting in enumerate(settings):
+        where = f"{WHERE}[{number}].where"
+        if setting.inside and setting.inside not in solids:
+            solids[setting.inside] = _solid(setting.inside, objects, where)
+        faces = _faces(setting.faces, source, where) if setting.faces else None
+        zones.append(Zone(solids.get(setting.inside), faces))
+    return tuple(zones)
+
+
+def _solid(name: str, objects: Sequence[Any], where: str) -> Body:
+    named = [obj for obj in objects if name == obj.Name] or [
+        obj for obj in objects if name == obj.Label
+    ]
+    if not named:
+        labels = ", ".join(obj.Label for obj in objects) or "none"
+        raise InputError(
+            "NO_OBJECT",
+            f"{where}.inside",
+            "{} is not among the zones of the toolpath ({}); add the object to its property Zones, "
+            "or name another",
+            name,
+            labels,
+        )
+    snapshot = snapshot_of(named[0])
+    if snapshot.mesh is not None:
+        return snapshot.body()
+    if not snapshot.shape.Solids:
+        raise InputError(
+            "OPEN_MESH",
+            f"{where}.inside",
+            "{} is not a solid, so it has no inside; use a closed solid, a closed mesh or a box",
+            snapshot.label,
+        )
+    triangles = in_kernel_process(tessellated, snapshot.shape.copy(False), CHORD_MM)
+    return Body(snapshot.label, triangles.vertices, triangles.triangles)
+
+
+def _faces(names: Sequence[str], source: Any, where: str) -> Array:
+    """Return the triangles (m, 3, 3) of faces of a part."""
+    if is_mesh(source):
+        raise InputError(
+            "NO_FACES",
+            f"{where}.faces",
+            "{} is a mesh, which has no faces; use a solid, a box or heights",
+            source.Label,
+        )
+    shape = global_shape(source)
+    missing = [
+        name
+        for name in names
+        if not name.removeprefix("Face").isdecimal()
+        or not 1 <= int(name.removeprefix("Face")) <= len(shape.Faces)
+    ]
+    if missing:
+        raise InputError(
+            "NO_FACES",
+            f"{where}.faces",
+            "{} has no {}; it has Face1 to Face{}",
+            source.Label,
+            ", ".join(missing),
+            len(shape.Faces),
+        )
+    triangles = in_kernel_process(tessellated, shape.copy(False), CHORD_MM)
+    face_numbers = [int(name.removeprefix("Face")) - 1 for name in names]
+    rows = [triangles.vertices[triangles.triangles[triangles.owner == k]] for k in face_numbers]
+    return np.concatenate(rows)

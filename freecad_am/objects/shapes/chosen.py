@@ -18,7 +18,7 @@ from ..fields.properties import HIDDEN, OUTPUT
 from ..stage import Stage
 from ..stage_parts import Outcome
 from ..staleness import UP_TO_DATE
-from ..work import faults
+from ..work import progress
 from . import bodies, nested
 from .bodies import shape_of
 from .nested import EDGE, FACE, LINE, PLANE, TOLERANCE, WHOLE_PART, Mark, marks_of, read, whole_of
@@ -166,7 +166,7 @@ class FeatureStage(Stage):
     def _others(self, obj: Any) -> list[Issue]:
         """Return issues on changed elements of a failed feature; empty for an unreadable part."""
         differences: list[Issue] = []
-        with contextlib.suppress(AmError), faults.kernel(obj):
+        with contextlib.suppress(AmError), progress.kernel_faults(obj):
             for link in self.chosen:
                 differences += _compared(obj, link, _marks(obj, link))
         return differences

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Progress, issues and cancellation of a long computation, for a terminal, a bar or no listener."""
+"""Progress, issues, cancellation and failures of a long computation."""
 
 from __future__ import annotations
 
 import contextlib
 import threading
 from collections.abc import Callable, Iterator
+from typing import Any
 
+from ...brep.kernel.limits import reported
 from ...core.issues import InputError, Issue
 
 Listener = Callable[[float, str], None]
@@ -84,4 +86,30 @@ def one_of(number: int, count: int, begin: float, end: float) -> Iterator[None]:
         listener(low + (fraction - begin) / count, text)
 
     with told_to(as_one, findings):
+        yield
+
+
+# ---- Failures of memory and kernel during a computation, as errors with a remedy
+
+
+@contextlib.contextmanager
+def memory_faults(label: str) -> Iterator[None]:
+    """Within the context, convert MemoryError to InputError NO_MEMORY, naming `label`."""
+    try:
+        yield
+    except MemoryError:
+        raise InputError(
+            "NO_MEMORY",
+            label,
+            "the computation needs more memory than available; use larger steps, such as layer "
+            "height and chord error, or a smaller part",
+        ) from None
+
+
+@contextlib.contextmanager
+def kernel_faults(obj: Any) -> Iterator[None]:
+    """Within the context, convert kernel faults to InputError BAD_SHAPE, naming the source."""
+    source = getattr(obj, "Source", None)
+    origin = source[0] if source else obj
+    with reported(str(origin.Label), getattr(origin, "Shape", None)):
         yield

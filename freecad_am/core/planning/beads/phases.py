@@ -209,6 +209,8 @@ def _insert_points(
     columns["points"][new], columns["tool"][new] = cell.tip_in_part(flange)
     condition[new] = condition_at(flange, joints[new])
     columns["speed"][new] = bead.speed[insert_rows]
+    if bead.settings is not None:
+        columns["settings"][new] = bead.settings[insert_rows]
     if bead.tangents is not None:  # a point within a segment is not a corner
         columns["tangents"][new] = (bead.tangents[segment, 1] + bead.tangents[insert_rows, 0])[
             :, None

@@ -74,6 +74,9 @@ def gone_back(bead: Bead, length: float) -> Bead:
         # the parameter keeps increasing, because it is the position along the bead
         parameter=extended(lambda column: 2.0 * column[-1] - retreat.of(column))(bead.parameter),
         speed=np.concatenate([bead.speed, bead.speed[::-1][: retreat.past]]),
+        settings=None
+        if bead.settings is None
+        else np.concatenate([bead.settings, bead.settings[::-1][: retreat.past]]),
         width=both(bead.width),
         height=both(bead.height),
         external=both(bead.external),

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...geometry.columns import dots, lengths, unit_rows
 from ...parameters.process import ProcessParameters
-from ...toolpath import Bead, Toolpath
+from ...toolpath import Bead, Toolpath, settings_of
 from ...types import Array, Index, Mask
 from ..deposit.pieces import cut_beads, join_pieces
 from ..deposit.spacing import is_spiral, turns_of
@@ -193,17 +193,24 @@ def sections(bead: Bead, toolpath: Toolpath, process: ProcessParameters) -> Arra
         Volume per length of each segment, mm3/mm. This is width times height without a wire, or
         with a schedule of the class, whose feed is unknown here.
     """
-    schedule = process.for_class(bead.role.bead_class).schedule
-    if schedule == process.schedule and bead.wire_share is not None:
-        return np.full(len(bead) - 1, process.wire.section * bead.wire_share)
-    if schedule == process.schedule and toolpath.wire_feed:
-        fed: Array = process.wire.section * toolpath.wire_feed / bead.speed[1:]
-        return fed
+    combinations, index = np.unique(settings_of(bead)[1:].astype(int), return_inverse=True)
+    schedules = [
+        process.at_place(bead.role.bead_class, active).schedule for active in combinations.tolist()
+    ]
+    by_wire = np.array([schedule == process.schedule for schedule in schedules])[np.ravel(index)]
+    if bead.wire_share is not None:
+        fed = np.full(len(bead) - 1, process.wire.section * bead.wire_share)
+    elif toolpath.wire_feed:
+        fed = process.wire.section * toolpath.wire_feed / bead.speed[1:]
+    else:
+        by_wire = np.zeros(len(bead) - 1, dtype=bool)
+        fed = np.zeros(len(bead) - 1)
+    if by_wire.all():
+        return np.asarray(fed)
     wide = np.full(len(bead), toolpath.bead_width or 0.0) if bead.width is None else bead.width
     tall = np.full(len(bead), toolpath.layer_height) if bead.height is None else bead.height
     unwrapped = wide * tall
-    middle: Array = 0.5 * (unwrapped[1:] + unwrapped[:-1])
-    return middle
+    return np.where(by_wire, fed, 0.5 * (unwrapped[1:] + unwrapped[:-1]))
 
 
 def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
