@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.obstacles import Body, box
+from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.parameters.settings import Setting
+from freecad_am.core.parameters.settings import SETTINGS, Setting
 from freecad_am.core.strategies.by_place import UNUSED_CODE, Zone, apply_settings
 from freecad_am.core.toolpath import Bead, BeadRole, Layer, Toolpath
 
@@ -199,3 +200,36 @@ def test_ten_thousand_random_settings():
     rng = np.random.default_rng(int(os.environ.get("ROBUST_SEED", "7")))
     for _ in range(4000):  # 2.5 settings a round on average
         check_round(rng)
+
+
+def test_the_notation_of_panels_and_the_json_of_documents_keep_settings():
+    rng = np.random.default_rng(3)
+    texts = "layers 0 to 4: travel_speed 4, schedule 3; layers from 7: weave 0; height to 5 and inside Zone: lead_on 0.5"
+    settings = SETTINGS.read(texts)
+    assert settings[0] == Setting(first_layer=0, last_layer=4, travel_speed=4.0, schedule=3)
+    assert settings[1] == Setting(first_layer=7, weave=0)
+    assert settings[2] == Setting(high=5.0, inside="Zone", lead_on=0.5)
+    some = tuple(random_setting(rng)[0] for _ in range(100))
+    for group in (settings, some):
+        assert SETTINGS.read(SETTINGS.to_json(group)) == group
+        again = SETTINGS.read(SETTINGS.text(group))
+        for one, other in zip(group, again, strict=True):
+            assert one.conditions() == other.conditions()
+            assert one.own_values().keys() == other.own_values().keys()
+    for wrong in (
+        "layers 0 to 4",
+        "somewhere: weave 1",
+        "layers 4 to 0: weave 1",
+        "layers 0: bead_width 2",
+    ):
+        with pytest.raises(InputError):
+            SETTINGS.read(wrong)
+
+
+def test_an_open_mesh_has_no_inside():
+    solid = box((5.0, 5.0, 5.0), np.eye(4), "zone")
+    process = ProcessParameters(settings=(Setting(inside="zone", weave=1),))
+    zone = Zone(Body("zone", solid.vertices, solid.triangles[1:]))
+    with pytest.raises(InputError) as error:
+        apply_settings(random_toolpath(np.random.default_rng(1)), process, (zone,), UP)
+    assert error.value.code == "OPEN_MESH"
