@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jobs in layers along a guide: read from waypoints.csv, measured with OpenCASCADE and by the geometry of arcs alone."""
+"""Jobs in layers along a guide, read from waypoints.csv and measured only with OpenCASCADE and the
+geometry of arcs."""
 
 import csv
 import json
@@ -26,25 +27,28 @@ build_direction: {{clearance: none{mode}}}
 """
 
 
-def arc(start, way, normal, angle, radius=RADIUS):
-    """An arc from a place on, turning about a normal by an angle, deg; and where and which way it ends."""
-    side = normal.cross(way)
+def arc(start, direction, normal, angle, radius=RADIUS):
+    """Return an arc from a point, turning about a normal by an angle in deg, and its end point and
+    direction."""
+    side = normal.cross(direction)
     middle, end = (
-        start + way * (radius * np.sin(t)) + side * (radius * (1 - np.cos(t)))
+        start + direction * (radius * np.sin(t)) + side * (radius * (1 - np.cos(t)))
         for t in np.radians([0.5 * angle, angle])
     )
     return (
         Part.Arc(start, middle, end).toShape(),
         end,
-        way * np.cos(np.radians(angle)) + side * np.sin(np.radians(angle)),
+        direction * np.cos(np.radians(angle)) + side * np.sin(np.radians(angle)),
     )
 
 
 def spine(angle=90, straight=15.0):
-    """Up, round by an angle, and straight on."""
+    """Return a curve that goes up, bends by an angle, and continues straight."""
     begin, up = V(0, 0, straight), V(0, 0, 1)
-    bend, end, way = arc(begin, up, V(0, 1, 0), angle)
-    return Part.Wire([Part.makeLine(V(), begin), bend, Part.makeLine(end, end + way * straight)])
+    bend, end, direction = arc(begin, up, V(0, 1, 0), angle)
+    return Part.Wire(
+        [Part.makeLine(V(), begin), bend, Part.makeLine(end, end + direction * straight)]
+    )
 
 
 def swept(profile, wire):
@@ -56,7 +60,7 @@ def elbow(wire=None, radius=9.0):
 
 
 def beam(wire=None):
-    """An I whose flanges are the inside and the outside of the bend."""
+    """Return an I-beam whose flanges are the inside and the outside of the bend."""
     half = [(9, 9), (9, 3), (3, 3)]
     corner = [(x, y) for x, y in half] + [(x, -y) for x, y in half[::-1]]
     outline = corner + [(-x, -y) for x, y in corner]
@@ -72,12 +76,12 @@ def planned(workshop):
             wire.exportBrep(str(workshop.folder / "spine.brep"))
         job = workshop.write_job(JOB.format(guide=guide, band=band, more=more, mode=mode))
         out = workshop.folder / f"out{again}"
-        done = workshop.run("plan", job.name, "-o", out.name, "--no-page")
-        if done.status == 2 or not out.exists():
-            return done, None, None
+        command = workshop.run("plan", job.name, "-o", out.name, "--no-page")
+        if command.status == 2 or not out.exists():
+            return command, None, None
         with open(next(out.rglob("waypoints.csv")), encoding="utf-8", newline="") as stream:
             rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
-        return done, json.loads(next(out.rglob("report.json")).read_text(encoding="utf-8")), rows
+        return command, json.loads(next(out.rglob("report.json")).read_text(encoding="utf-8")), rows
 
     return run
 
@@ -87,17 +91,18 @@ def column(rows, *names):
 
 
 def bend_of(points, straight=15.0):
-    """By what angle (n,) rad about the axis of the spine's bend points (n, 3) are, and how far (n,) mm from that axis."""
+    """Return the angle (n,) in rad of points (n, 3) about the axis of the spine's bend, and their
+    distance (n,) in mm from it."""
     off = points - (RADIUS, 0.0, straight)
     return np.arctan2(off[:, 2], -off[:, 0]), np.hypot(off[:, 0], off[:, 2])
 
 
 def test_beads_of_layers_along_a_guide_have_one_speed_in_planes(workshop, planned):
-    """Where a note on their speeds says so."""
+    """The note on their speeds says so."""
     _, report, rows = planned(elbow(spine(30, 5.0)), band="35 %")
-    (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "SPEED_VARIES"]
-    assert "as high as the layer" in told
-    assert told.endswith(
+    (message,) = [issue["message"] for issue in report["issues"] if issue["code"] == "SPEED_VARIES"]
+    assert "as high as the layer" in message
+    assert message.endswith(
         "; for a constant speed set strategy.layers: planes and strategy.narrowest: 100 %"
     )
     assert len(set(column(rows, "speed_mm_s").ravel())) > 1
@@ -122,14 +127,14 @@ def test_beads_of_layers_along_a_guide_have_one_speed_in_planes(workshop, planne
     ],
 )
 def test_a_bent_part_is_filled_by_planes_normal_to_its_spine(planned, make, guide, spare):
-    part = make()
-    done, report, rows = planned(part, guide, spine(), band="35 %")
-    assert done.status == 0, done.err
+    shape_ = make()
+    command, report, rows = planned(shape_, guide, spine(), band="35 %")
+    assert command.status == 0, command.err
     points, build = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, "bx", "by", "bz")
     layer = np.array([int(row["layer"]) for row in rows])
-    solid = part.Solids[0]
+    solid = shape_.Solids[0]
     off = [
-        part.distToShape(Part.Vertex(*point))[0]
+        shape_.distToShape(Part.Vertex(*point))[0]
         for point in points.tolist()
         if not solid.isInside(V(*point), 1e-3, True)
     ]
@@ -137,41 +142,44 @@ def test_a_bent_part_is_filled_by_planes_normal_to_its_spine(planned, make, guid
     assert {"OFF_PART", "UNSUPPORTED", "OPEN_GAP"}.isdisjoint(
         issue["code"] for issue in report["issues"]
     )
-    # planes: all of a layer lies in one, the next one stands a layer height on along the spine
+    # each layer is in a plane, and the next one a layer height further along the spine
     for number in range(layer.max() + 1):
-        here = layer == number
-        assert np.ptp(build[here], axis=0).max() < 1e-6
-        assert np.ptp(points[here] @ build[here][0]) < 1e-5
-    angle, away = bend_of(points)
+        in_layer = layer == number
+        assert np.ptp(build[in_layer], axis=0).max() < 1e-6
+        assert np.ptp(points[in_layer] @ build[in_layer][0]) < 1e-5
+    angle, distances = bend_of(points)
     bent = (angle > 0.1) & (angle < 0.5 * np.pi - 0.1)
-    # in the bend the plane goes through the axis of it: all its points have one angle
+    # in the bend the plane contains its axis, so all its points have one angle
     for number in np.unique(layer[bent]):
         assert np.ptp(angle[bent & (layer == number)]) * RADIUS < 20.0 * spare + 1e-3
-    # heights are in proportion to the distance from the axis; the report tells those of the outline
+    # heights are in proportion to the distance from the axis; the report states those of the
+    # outline
     inside, outside = RADIUS - 9.0, RADIUS + 9.0
-    told = {row["layer"]: row for row in report["layer_heights"]}
-    middle = told[int(np.median(layer[bent]))]
+    layer_rows = {row["layer"]: row for row in report["layer_heights"]}
+    middle = layer_rows[int(np.median(layer[bent]))]
     assert middle["least_mm"] == pytest.approx(HEIGHT * inside / RADIUS, abs=0.01 + spare)
     assert middle["largest_mm"] == pytest.approx(HEIGHT * outside / RADIUS, abs=0.01 + spare)
-    assert told[1]["least_mm"] == pytest.approx(HEIGHT, abs=spare) == told[1]["largest_mm"]
+    assert (
+        layer_rows[1]["least_mm"] == pytest.approx(HEIGHT, abs=spare) == layer_rows[1]["largest_mm"]
+    )
     # the torch is slower where the layer is higher
     speed = column(rows, "speed_mm_s")[:, 0]
     start = np.array([row["point"] == "0" for row in rows])
     if guide != "auto":
-        mean = 0.5 * (away[1:] + away[:-1])
-        some = bent[1:] & ~start[1:]
-        assert np.abs(speed[1:][some] * mean[some] / (6.0 * RADIUS) - 1.0).max() < 0.02
-    assert report["deposit"]["deposited_cm3"] == pytest.approx(part.Volume / 1000.0, rel=0.03)
+        mean = 0.5 * (distances[1:] + distances[:-1])
+        moves_ = bent[1:] & ~start[1:]
+        assert np.abs(speed[1:][moves_] * mean[moves_] / (6.0 * RADIUS) - 1.0).max() < 0.02
+    assert report["deposit"]["deposited_cm3"] == pytest.approx(shape_.Volume / 1000.0, rel=0.03)
     if make is elbow:
-        assert report["totals"]["volume_cm3"] == pytest.approx(part.Volume / 1000.0, rel=0.03)
+        assert report["totals"]["volume_cm3"] == pytest.approx(shape_.Volume / 1000.0, rel=0.03)
 
 
 def test_a_plane_that_meets_the_part_twice_cuts_what_belongs_to_it_alone(planned):
-    """An arch: planes of one leg go through the other one too."""
+    """Planes through one leg of an arch cross the other one too."""
     wire = spine(180)
-    part = elbow(wire, 6.0)
-    done, _, rows = planned(part, "{file: spine.brep}", wire)
-    assert done.status == 0, done.err
+    arch = elbow(wire, 6.0)
+    command, _, rows = planned(arch, "{file: spine.brep}", wire)
+    assert command.status == 0, command.err
     points, layer = (
         column(rows, "x_mm", "y_mm", "z_mm"),
         np.array([int(row["layer"]) for row in rows]),
@@ -190,32 +198,38 @@ def test_a_plane_that_meets_the_part_twice_cuts_what_belongs_to_it_alone(planned
 
 def test_an_edge_of_the_part_guides_too_and_the_same_job_gives_the_same_bytes(planned, workshop):
     beam().exportStep(str(workshop.folder / "part.step"))
-    part = Part.read(str(workshop.folder / "part.step"))  # its edges have other numbers in the file
+    elbow_shape = Part.read(
+        str(workshop.folder / "part.step")
+    )  # its edges have other numbers in the file
     number = next(
         k
-        for k, edge in enumerate(part.Edges)
+        for k, edge in enumerate(elbow_shape.Edges)
         if edge.Curve.TypeId == "Part::GeomCircle" and abs(edge.Curve.Radius - RADIUS - 3.0) < 1e-6
     )
     for again in ("", "2"):
-        done, report, _ = planned(part, f"{{edges: [Edge{number + 1}]}}", band="40 %", again=again)
-        assert done.status == 0, done.err
-    first, second = (
+        command, report, _ = planned(
+            elbow_shape, f"{{edges: [Edge{number + 1}]}}", band="40 %", again=again
+        )
+        assert command.status == 0, command.err
+    first_run, second_run = (
         next((workshop.folder / name).rglob("waypoints.csv")).read_bytes()
         for name in ("out", "out2")
     )
-    assert first == second
+    assert first_run == second_run
     largest = max(row["largest_mm"] for row in report["layer_heights"])
     assert largest == pytest.approx(
         HEIGHT * (RADIUS + 9.0) / (RADIUS + 3.0), abs=0.02
     )  # a layer height on the edge
 
 
-BESIDE = Part.makeLine(V(30, 0, 0), V(30, 0, 60))
+LINE_OUTSIDE = Part.makeLine(V(30, 0, 0), V(30, 0, 60))
 BACK = Part.Wire([Part.makeLine(V(0, 0, 0), V(0, 0, 40)), Part.makeLine(V(0, 0, 40), V(0.5, 0, 0))])
 CORNER = Part.Wire([Part.makeLine(V(), V(0, 0, 30)), Part.makeLine(V(0, 0, 30), V(10, 0, 60))])
-APART = Part.Compound([Part.makeLine(V(), V(0, 0, 20)), Part.makeLine(V(0, 0, 30), V(0, 0, 60))])
+SEPARATE_LINES = Part.Compound(
+    [Part.makeLine(V(), V(0, 0, 20)), Part.makeLine(V(0, 0, 30), V(0, 0, 60))]
+)
 RING = Part.Wire(Part.makeCircle(20, V(), V(0, 1, 0)))
-TIGHT = Part.Wire(
+TIGHT_BEND = Part.Wire(
     [Part.makeLine(V(), V(0, 0, 30)), arc(V(0, 0, 30), V(0, 0, 1), V(0, 1, 0), 90, 6.0)[0]]
 )
 
@@ -223,20 +237,22 @@ TIGHT = Part.Wire(
 @pytest.mark.parametrize(
     ("wire", "code", "words"),
     [
-        (BESIDE, "GUIDE_OUTSIDE", "(30, 0, "),
+        (LINE_OUTSIDE, "GUIDE_OUTSIDE", "(30, 0, "),
         (BACK, "GUIDE_DOUBLES_BACK", "(0, 0, 40)"),
         (CORNER, "GUIDE_CORNER", "18.4 deg"),
-        (APART, "GUIDE_OPEN", "gap is 10 mm"),
+        (SEPARATE_LINES, "GUIDE_OPEN", "gap is 10 mm"),
         (RING, "GUIDE_CLOSED", "remove one edge"),
-        (TIGHT, "GUIDE_TIGHT", "larger radius"),
+        (TIGHT_BEND, "GUIDE_TIGHT", "larger radius"),
     ],
 )
 def test_guides_that_cannot_lead_are_told(planned, wire, code, words):
-    done, _, _ = planned(Part.makeBox(20, 20, 60, V(-10, -10, 0)), "{file: spine.brep}", wire)
-    assert done.status == 2
-    assert f"error[{code}]" in done.err and words in done.err and done.err.count("error[") == 1, (
-        done.err
-    )
+    command, _, _ = planned(Part.makeBox(20, 20, 60, V(-10, -10, 0)), "{file: spine.brep}", wire)
+    assert command.status == 2
+    assert (
+        f"error[{code}]" in command.err
+        and words in command.err
+        and command.err.count("error[") == 1
+    ), command.err
 
 
 @pytest.mark.parametrize(
@@ -259,19 +275,23 @@ def test_guides_that_cannot_lead_are_told(planned, wire, code, words):
     ],
 )
 def test_what_cannot_be_cut_is_told(planned, shape, guide, more, mode, code, words):
-    done, _, _ = planned(shape, guide, more=more, mode=mode)
-    assert done.status == 2
-    assert f"error[{code}]" in done.err and words in done.err and done.err.count("error[") == 1, (
-        done.err
-    )
+    command, _, _ = planned(shape, guide, more=more, mode=mode)
+    assert command.status == 2
+    assert (
+        f"error[{code}]" in command.err
+        and words in command.err
+        and command.err.count("error[") == 1
+    ), command.err
 
 
 def test_layers_beyond_the_band_are_refused_with_layer_and_place(planned):
-    done, _, _ = planned(elbow(), "{file: spine.brep}", spine(), band="10 %")
+    command, _, _ = planned(elbow(), "{file: spine.brep}", spine(), band="10 %")
     assert (
-        done.status in (2, 3) and "LAYER_HEIGHT" in done.err and "22.5 % is needed" in done.err
-    ), done.err
-    assert "layer " in done.err and "strategy.band" in done.err
+        command.status in (2, 3)
+        and "LAYER_HEIGHT" in command.err
+        and "22.5 % is needed" in command.err
+    ), command.err
+    assert "layer " in command.err and "strategy.band" in command.err
 
 
 @pytest.mark.parametrize("layers", ["planes", "geodesic"])
@@ -280,24 +300,27 @@ def test_only_layers_along_have_a_guide(workshop, layers):
     job = JOB.format(guide="{edges: [Edge1]}", band="20 %", more="", mode="").replace(
         "along", layers
     )
-    done = workshop.run("plan", workshop.write_job(job).name, "-o", "out", "--no-page")
+    command = workshop.run("plan", workshop.write_job(job).name, "-o", "out", "--no-page")
     assert (
-        done.status == 2 and "error[NOT_FOR_FAMILY]" in done.err and "strategy.guide" in done.err
-    ), done.err
+        command.status == 2
+        and "error[NOT_FOR_FAMILY]" in command.err
+        and "strategy.guide" in command.err
+    ), command.err
 
 
 def test_the_example_is_planned_and_its_report_shows_layers_in_their_planes(workshop, root):
-    """Coarser: the ring of the pipe, 28 mm wide less the width of a bead, wherever along the bend it is cut."""
+    """With coarser settings, the section is the ring of the pipe, 28 mm wide less the width of a
+    bead, at every position along the bend."""
     for name in ("pipe-bend.step", "pipe-bend.yaml"):
         shutil.copy(root / "resources" / "examples" / name, workshop.folder)
     path = workshop.folder / "pipe-bend.yaml"
     path.write_text(path.read_text(encoding="utf-8").replace("2.5 mm", "8 mm"), encoding="utf-8")
-    done = workshop.run("plan", path.name, "-o", "out")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", path.name, "-o", "out")
+    assert command.status == 0, command.err
     cell = read_job(str(path)).cell
     assert row_limits.over_all(workshop.folder / "out", cell.machine, cell.limits) <= 0.0
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
-    pictures = [part for part in page.split("<svg") if ", flattened</" in part]
+    pictures = [drawing for drawing in page.split("<svg") if ", flattened</" in drawing]
     assert len(pictures) == 2
     for picture in pictures:
         box = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', picture)

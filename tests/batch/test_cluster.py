@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`batch --scheduler`: rows planned by the workers of a Dask cluster."""
+"""`batch --scheduler` plans rows with the workers of a Dask cluster."""
 
 import contextlib
 import csv
@@ -34,16 +34,16 @@ WRITTEN = (
     "CreationDate",
     "LastModifiedDate",
     "Uid",
-)  # of a document, another one each time it is saved
+)  # entries of a document that differ each time it is saved
 
 
 class Cluster:
-    """Two workers in a folder of their own."""
+    """Two workers with a folder of their own."""
 
     def __init__(self, *words):
         self.folder = Path(
             tempfile.mkdtemp(prefix="cluster-")
-        )  # not in a folder of pytest's, which are closed to others
+        )  # not in a folder of pytest, which is closed to other users
         self.folder.chmod(0o777)
         self.process = subprocess.Popen(
             [
@@ -74,12 +74,12 @@ class Cluster:
 
 @pytest.fixture(scope="module")
 def cluster():
-    made = Cluster()
-    yield made
-    made.end()
+    two_workers = Cluster()
+    yield two_workers
+    two_workers.end()
 
 
-def started(workshop, *words):
+def start_batch(workshop, *words):
     return subprocess.Popen(
         [str(workshop.launcher), "batch", "rows.csv", "--job", "cup.yaml", *words],
         cwd=workshop.folder,
@@ -92,7 +92,7 @@ def started(workshop, *words):
 
 
 def done_rows(folder):
-    """The folders of rows that are done."""
+    """Return the folders of finished rows."""
     return sorted(path.parent for path in folder.glob("row-*/report.json"))
 
 
@@ -105,24 +105,25 @@ def wait_for(folder, count, process, patience=300):
 
 
 def nothing_left(cluster):
-    """Whether the workers have no folder of a batch any more, some time after it: a row that a lost one began may go on."""
+    """Return whether the workers have no batch folder after some time; a row of a lost worker may
+    still run."""
     until = time.monotonic() + 60
-    while (found := list(cluster.folder.rglob("freecad-am-*"))) and time.monotonic() < until:
+    while (remaining := list(cluster.folder.rglob("freecad-am-*"))) and time.monotonic() < until:
         time.sleep(0.1)
-    assert not found
+    assert not remaining
     return True
 
 
-def compared(content, name):
-    """A file of outputs without what another run of the same job writes otherwise: times and dates."""
+def comparable(content, name):
+    """Return an output file without times and dates, which differ between runs of the same job."""
     if name.endswith("report.json"):
         report = json.loads(content)
         assert report.pop("timing_s")
         return re.sub(r'"[a-z_]*time_s": [0-9.e-]+', "", json.dumps(report))
     if name.endswith(".FCStd"):
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            parts = {entry: archive.read(entry) for entry in archive.namelist()}
-        text = parts.pop("Document.xml").decode()
+            entries = {entry: archive.read(entry) for entry in archive.namelist()}
+        text = entries.pop("Document.xml").decode()
         for key in WRITTEN:
             text, count = re.subn(
                 rf'(<Property name="{key}"[^>]*>\s*<\w+ value=")[^"]*', r"\1", text
@@ -130,17 +131,17 @@ def compared(content, name):
             assert count == 1, key
         text = re.sub(r'(<Object type=[^>]* id=")\d+', r"\1", text)
         text = re.sub(r'(<Property name="Seconds"[^>]*>\s*<Float value=")[^"]*', r"\1", text)
-        return {**parts, "Document.xml": text.splitlines()}
+        return {**entries, "Document.xml": text.splitlines()}
     if name.endswith("report.html"):
         return re.sub(rb"<td>[0-9]+\.[0-9]{3} s</td>", b"", content)
     return content
 
 
-def same(one, other):
-    """Whether two sets of outputs are of the same job."""
-    assert set(one) == set(other)
-    for name in one:
-        assert compared(one[name], name) == compared(other[name], name), name
+def same(outputs, expected):
+    """Return whether two sets of outputs are of the same job."""
+    assert set(outputs) == set(expected)
+    for name in outputs:
+        assert comparable(outputs[name], name) == comparable(expected[name], name), name
     return True
 
 
@@ -157,17 +158,17 @@ def write_rows(workshop, heights=HEIGHTS):
     ids=["a few rows", "200 rows"],
 )
 def test_same_bytes_as_without_and_a_lost_worker_loses_nothing(workshop, cluster, heights):
-    """The workers see none of the files: they run as another user, and the folder is closed."""
+    """The workers cannot read the files: they run as another user, and the folder is closed."""
     write_rows(workshop, heights)
     workshop.folder.chmod(0o700)
-    before = cluster.workers()
-    process = started(workshop, "--scheduler", cluster.address, "-o", "there")
+    workers_ = cluster.workers()
+    process = start_batch(workshop, "--scheduler", cluster.address, "-o", "there")
     wait_for(workshop.folder / "there", 1, process)
-    os.kill(before[0], signal.SIGKILL)
+    os.kill(workers_[0], signal.SIGKILL)
     out, err = process.communicate(timeout=1800)
     assert process.returncode == 0, err
     assert [row["exit"] for row in csv.DictReader(io.StringIO(out))] == ["0"] * len(heights)
-    assert set(cluster.workers()) != set(before)
+    assert set(cluster.workers()) != set(workers_)
     assert (
         len(
             re.findall(
@@ -177,8 +178,9 @@ def test_same_bytes_as_without_and_a_lost_worker_loses_nothing(workshop, cluster
         >= 2
     )
     assert "VERSIONS" not in err
-    here = started(workshop, "-o", "here", "-j", "2")
-    assert here.communicate(timeout=1800)[0] == out  # many rows take longer than `run` waits
+    local_batch = start_batch(workshop, "-o", "here", "-j", "2")
+    # many rows take longer than the timeout of `run`
+    assert local_batch.communicate(timeout=1800)[0] == out
     for row in done_rows(workshop.folder / "here"):
         assert same(workshop.files(f"here/{row.name}"), workshop.files(f"there/{row.name}"))
     assert nothing_left(cluster)
@@ -188,29 +190,29 @@ def test_same_bytes_as_without_and_a_lost_worker_loses_nothing(workshop, cluster
 @pytest.mark.long
 def test_interrupted_and_resumed(workshop, cluster):
     write_rows(workshop)
-    process = started(workshop, "--scheduler", cluster.address, "-o", "rows")
+    process = start_batch(workshop, "--scheduler", cluster.address, "-o", "rows")
     top = workshop.folder / "rows"
     wait_for(top, 2, process)
     process.send_signal(signal.SIGINT)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130 and "--resume" in err, err[-1500:]
-    kept = {row.name: (row / "report.json").stat().st_mtime_ns for row in done_rows(top)}
-    assert 2 <= len(kept) < len(HEIGHTS)
+    finished_times = {row.name: (row / "report.json").stat().st_mtime_ns for row in done_rows(top)}
+    assert 2 <= len(finished_times) < len(HEIGHTS)
     assert not list(top.rglob(".unfinished*"))
     assert nothing_left(cluster)
-    done = workshop.run(
+    command = workshop.run(
         "batch", "rows.csv", "--job", "cup.yaml", "-o", "rows", "--resume", "-j", "2"
     )
-    assert done.status == 0 and f"{len(kept)} of {len(HEIGHTS)} rows" in done.err
+    assert command.status == 0 and f"{len(finished_times)} of {len(HEIGHTS)} rows" in command.err
     assert len(done_rows(top)) == len(HEIGHTS)
-    assert [row["strategy.layer_height"] for row in csv.DictReader(io.StringIO(done.out))] == [
+    assert [row["strategy.layer_height"] for row in csv.DictReader(io.StringIO(command.out))] == [
         f"{h} mm" for h in HEIGHTS
     ]
     assert all(
         int(row["layers"]) > 2 and row["exit"] == "0"
-        for row in csv.DictReader(io.StringIO(done.out))
+        for row in csv.DictReader(io.StringIO(command.out))
     )
-    for name, when in kept.items():
+    for name, when in finished_times.items():
         assert (top / name / "report.json").stat().st_mtime_ns == when
 
 
@@ -221,20 +223,22 @@ def test_a_cluster_of_another_version_or_none(workshop):
         free.bind(("127.0.0.1", 0))
         nobody = f"tcp://127.0.0.1:{free.getsockname()[1]}"
     for address in (nobody, "no such address", "tcp://nowhere.invalid:8786"):
-        done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "--scheduler", address)
-        assert done.status == 2 and done.err.startswith(
+        command = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "--scheduler", address)
+        assert command.status == 2 and command.err.startswith(
             "error[SCHEDULER] --scheduler: no scheduler answers"
-        ), done.err
-        assert "Traceback" not in done.err
-    other = Cluster("1999.1.0")
+        ), command.err
+        assert "Traceback" not in command.err
+    old_cluster = Cluster("1999.1.0")
     try:
-        done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "--scheduler", other.address)
+        command = workshop.run(
+            "batch", "rows.csv", "--job", "cup.yaml", "--scheduler", old_cluster.address
+        )
     finally:
-        other.end()
-    assert done.status == 2
+        old_cluster.end()
+    assert command.status == 2
     assert re.search(
         r"error\[SCHEDULER\] --scheduler: \S+ scheduler has distributed 1999.1.0, but the command has \d",
-        done.err,
+        command.err,
     )
     assert not (workshop.folder / "out").exists()
 
@@ -244,11 +248,11 @@ def test_a_cluster_without_workers_or_with_one_that_cannot_plan(workshop, cluste
     from freecad_am.batch import cluster as module
 
     write_rows(workshop)
-    (_, found), session = (
+    (_, result), session = (
         row_table.read(str(workshop.folder / "rows.csv"), str(workshop.job)),
         Told(),
     )
-    assert len(found) == len(HEIGHTS)
+    assert len(result) == len(HEIGHTS)
     monkeypatch.setattr(module.Cluster, "_workers", lambda self: {})
     with pytest.raises(InputError, match="has no workers; start workers with: dask worker tcp://"):
         module.Cluster(cluster.address, session)
@@ -276,7 +280,7 @@ def test_a_cluster_without_workers_or_with_one_that_cannot_plan(workshop, cluste
 
 
 class Told:
-    """A session that keeps what it is told."""
+    """A session that keeps the reported issues."""
 
     def __init__(self):
         self.lines = []
@@ -287,7 +291,7 @@ class Told:
 
 @dask
 def test_a_result_that_was_lost_with_its_worker_is_waited_for(monkeypatch):
-    """Dask makes it again: between its end and its way here a worker may be gone."""
+    """Dask recomputes the result, because its worker may be lost after the row has finished."""
     from freecad_am.batch import cluster as module
 
     monkeypatch.setattr("distributed.wait", lambda *_, **__: None)
@@ -316,7 +320,7 @@ NOWHERE = {"machines": [], "home": "/nowhere"}
 
 
 def order(row):
-    """The job of a row, as a worker is asked to plan it."""
+    """Return the job of a row as sent to a worker."""
     return {"label": row.label, "values": row.tree().values, "path": row.path, "dry": False}
 
 
@@ -327,12 +331,12 @@ def test_without_dask_that_is_told(workshop, monkeypatch):
     with pytest.raises(InputError) as error:
         module.Cluster("tcp://127.0.0.1:1", Told())
     assert error.value.code == "NO_DASK" and "python3-distributed" in error.value.message
-    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "--scheduler", "x", "-j", "2")
-    assert done.status == 2 and "-j" in done.err
+    command = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "--scheduler", "x", "-j", "2")
+    assert command.status == 2 and "-j" in command.err
 
 
 def test_files_travel_with_a_job(workshop, tmp_path):
-    """All that a job names, wherever it lies: planned with the whole folder moved away, to the bytes it had before."""
+    """The job gives the same bytes with its whole folder moved away, wherever its files are."""
     home = workshop.folder / "home"
     for name in ("cell", "meshes", "around", "tables"):
         (home / name).mkdir(parents=True)
@@ -353,7 +357,7 @@ def test_files_travel_with_a_job(workshop, tmp_path):
     workshop.write_job(text.replace("layer_height: 4 mm", "layer_height: 20 mm"))
     write_rows(workshop, (20,))
     assert workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "out").status == 0
-    before = workshop.files("out/row-001")
+    original = workshop.files("out/row-001")
     _, (row,) = row_table.read(str(workshop.folder / "rows.csv"), str(workshop.job))
     named = {
         str(Path(name).relative_to(workshop.folder)) for name in row.files if os.path.isfile(name)
@@ -361,31 +365,31 @@ def test_files_travel_with_a_job(workshop, tmp_path):
     inside = {"cell/cell.yaml", "cell/mine.json", "around/post.stl", "meshes/base.stl"}
     assert named == {"cup.step", *(f"home/{name}" for name in inside)}
     files = [(name, Path(name).read_bytes()) for name in row.files if os.path.isfile(name)]
-    apart = tmp_path.with_name(f"{tmp_path.name}-worker")
-    apart.mkdir()
-    worker = freecad_am_row_worker.Batch(str(apart))
-    workshop.folder.rename(apart / "away")
+    worker_folder = tmp_path.with_name(f"{tmp_path.name}-worker")
+    worker_folder.mkdir()
+    worker = freecad_am_row_worker.Batch(str(worker_folder))
+    workshop.folder.rename(worker_folder / "away")
     try:
         worker.unpack(versions.package(), files, [])
-        result = worker.run(NOWHERE, {**order(row), "folder": str(apart / "row")})["result"]
+        result = worker.run(NOWHERE, {**order(row), "folder": str(worker_folder / "row")})["result"]
         assert result["exit"] == 0, result
-        found = {
-            str(path.relative_to(apart / "row")): path.read_bytes()
-            for path in (apart / "row").rglob("*")
+        paths_found = {
+            str(path.relative_to(worker_folder / "row")): path.read_bytes()
+            for path in (worker_folder / "row").rglob("*")
             if path.is_file()
         }
-        assert same(before, found)
-        assert b"/nowhere" not in b"".join(found.values()) and str(apart).encode() not in b"".join(
-            found.values()
-        )
+        assert same(original, paths_found)
+        assert b"/nowhere" not in b"".join(paths_found.values()) and str(
+            worker_folder
+        ).encode() not in b"".join(paths_found.values())
     finally:
         worker.stop()
-        (apart / "away").rename(workshop.folder)
+        (worker_folder / "away").rename(workshop.folder)
     assert not os.path.exists(worker.path)
 
 
 def test_what_a_lost_worker_leaves_removes_itself(workshop, tmp_path_factory):
-    """The process of a row ends as its stdin does, with the folder of the batch."""
+    """The process of a row ends when its stdin closes, and removes the folder of the batch."""
     folder = tmp_path_factory.mktemp("worker")
     write_rows(workshop, (20,))
     _, (row,) = row_table.read(str(workshop.folder / "rows.csv"), str(workshop.job))
@@ -401,23 +405,24 @@ def test_what_a_lost_worker_leaves_removes_itself(workshop, tmp_path_factory):
 
 
 def test_what_has_changed_is_planned_again(workshop):
-    """Of rows that were done: one whose cells differ, one whose outputs are gone, all where the part differs."""
+    """Of finished rows these are planned again: one with other cells, one whose outputs are
+    missing, and all if the part differs."""
 
     def batch(*heights):
         write_rows(workshop, heights)
-        done = workshop.run(
+        command = workshop.run(
             "batch", "rows.csv", "--job", "cup.yaml", "-o", "rows", "--resume", "-j", "2"
         )
-        assert done.status == 0, done.err
-        kept = int(re.search(r"note\[RESUMED\] batch: (\d) of \d rows", done.err)[1])
-        told = [int(row["layers"]) for row in csv.DictReader(io.StringIO(done.out))]
-        return kept, told
+        assert command.status == 0, command.err
+        kept_count = int(re.search(r"note\[RESUMED\] batch: (\d) of \d rows", command.err)[1])
+        layer_counts = [int(row["layers"]) for row in csv.DictReader(io.StringIO(command.out))]
+        return kept_count, layer_counts
 
     workshop.write_job(
         workshop.text.split("cell:")[0]
-    )  # rows without a robot are planned in half of the time
-    kept, layers = batch(20, 25)
-    assert kept == 0 and layers[0] > layers[1]
+    )  # rows without a robot take half of the time
+    kept_count, layers = batch(20, 25)
+    assert kept_count == 0 and layers[0] > layers[1]
     assert batch(20, 25) == (2, layers)
     assert batch(20, 30)[0] == 1
     (workshop.folder / "rows" / "row-001" / "report.json").write_text("{}")
@@ -425,7 +430,7 @@ def test_what_has_changed_is_planned_again(workshop):
     journal = workshop.folder / "rows" / ".rows.jsonl"
     journal.write_text(
         journal.read_text()[:-20] + "\nnonsense\n[]\n{}\n"
-    )  # as a kill and an editor leave it
+    )  # as after a kill and an editor
     assert batch(20, 30)[0] == 1
     Part.makeSphere(45.0).exportStep(str(workshop.folder / "cup.step"))
     assert batch(20, 30)[0] == 0
@@ -435,11 +440,11 @@ def test_a_dry_run_refuses_and_plans_nothing(workshop):
     (workshop.folder / "rows.csv").write_text(
         "strategy.layer_height,program.post,name\n20 mm,,fine\n1 kg,,heavy\n20 mm,siemens,other\n"
     )
-    done = workshop.run(
+    command = workshop.run(
         "batch", "rows.csv", "--job", "cup.yaml", "--dry-run", "-o", "dry", "-j", "2"
     )
-    assert done.status == 2
-    assert [row["status"] for row in csv.DictReader(io.StringIO(done.out))] == [
+    assert command.status == 2
+    assert [row["status"] for row in csv.DictReader(io.StringIO(command.out))] == [
         "checked",
         "failed",
         "failed",
@@ -457,22 +462,23 @@ def test_a_dry_run_refuses_and_plans_nothing(workshop):
     ],
 )
 def test_time_left(done, now, seconds, says):
-    """Rows that were kept count as done, but not for the pace."""
+    """Kept rows count as done, but not for the estimate of the pace."""
     assert rows._progress(done, 10, now, seconds) == says
 
 
 def test_files_of_jobs_are_opened_by_where_they_are():
-    """Nothing of core opens a file, or looks whether it is there, by its name alone: it would not be found on a worker."""
+    """The core never opens or checks a file by its name in the job, because a worker would not find
+    it."""
     looks = re.compile(
         r"\.is_file\(|\.exists\(|(?<![\w.])open\(|\.read_text\(|\.read_bytes\(|isfile\(|\.stat\("
     )
     core = Path(versions.ROOT) / "freecad_am" / "core"
-    found = {
+    calls = {
         f"{path.relative_to(core)}: {line.strip()}"
         for path in core.rglob("*.py")
         for line in path.read_text(encoding="utf-8").splitlines()
         if looks.search(line) and "locate(" not in line
     }
-    assert found == {
-        'geometry/job_files.py: with open(descriptor, "rb") as stream:',  # of what is located
+    assert calls == {
+        'geometry/job_files.py: with open(descriptor, "rb") as stream:',  # these open located files
     }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jobs of curves that are laid as they are: what is in the table, and on the shape, is in waypoints.csv."""
+"""Jobs of curves as beads: waypoints.csv has the points of the table, or of the shape."""
 
 import csv
 import json
@@ -36,13 +36,13 @@ def planned(workshop):
         if not file.endswith(".step"):
             (workshop.folder / file).write_bytes(text if isinstance(text, bytes) else text.encode())
         job = workshop.write_job(JOB.format(file=file, part=part, more=more, mode=mode))
-        done = workshop.run("plan", job.name, "-o", "out", "--no-page")
-        if done.status:
-            return done, None, None
+        command = workshop.run("plan", job.name, "-o", "out", "--no-page")
+        if command.status:
+            return command, None, None
         out = workshop.folder / "out"
         with open(next(out.rglob("waypoints.csv")), encoding="utf-8", newline="") as stream:
             rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
-        return done, json.loads(next(out.rglob("report.json")).read_text(encoding="utf-8")), rows
+        return command, json.loads(next(out.rglob("report.json")).read_text(encoding="utf-8")), rows
 
     return run
 
@@ -52,13 +52,15 @@ def column(rows, *names):
 
 
 def test_a_table_is_laid_as_it_is_and_over_itself(planned):
-    done, report, rows = planned(more=", repeat: 3")
-    assert done.status == 0, done.err
-    told = np.array([[float(cell) for cell in line.split(",")] for line in TABLE.splitlines()[1:]])
-    away = told[:, 3:6] / np.linalg.norm(told[:, 3:6], axis=1)[:, None]
-    expected = np.vstack([told[:, :3] + 2.0 * k * away for k in range(3)])
+    command, report, rows = planned(more=", repeat: 3")
+    assert command.status == 0, command.err
+    table = np.array([[float(cell) for cell in line.split(",")] for line in TABLE.splitlines()[1:]])
+    directions = table[:, 3:6] / np.linalg.norm(table[:, 3:6], axis=1)[:, None]
+    expected = np.vstack([table[:, :3] + 2.0 * k * directions for k in range(3)])
     np.testing.assert_allclose(column(rows, "x_mm", "y_mm", "z_mm"), expected, atol=2e-6)
-    np.testing.assert_allclose(column(rows, "bx", "by", "bz"), np.tile(away, (3, 1)), atol=1e-8)
+    np.testing.assert_allclose(
+        column(rows, "bx", "by", "bz"), np.tile(directions, (3, 1)), atol=1e-8
+    )
     assert [(row["layer"], row["bead"]) for row in rows[:5]] == [("0", "0")] * 3 + [("0", "1")] * 2
     assert (
         report["counts"] == {"layers": 3, "beads": 6, "points": 15}
@@ -75,8 +77,8 @@ def test_a_table_is_laid_as_it_is_and_over_itself(planned):
     ],
 )
 def test_forms_of_a_table(planned, text):
-    done, _, rows = planned(text=text, more=", direction: [0, 1, 1]")
-    assert done.status == 0, done.err
+    command, _, rows = planned(text=text, more=", direction: [0, 1, 1]")
+    assert command.status == 0, command.err
     np.testing.assert_allclose(
         column(rows, "x_mm", "y_mm", "z_mm"), [[0, 0, 0], [10, 0, 0], [10, 10, 0]], atol=1e-9
     )
@@ -109,24 +111,24 @@ def test_forms_of_a_table(planned, text):
     ],
 )
 def test_bad_tables_are_told_with_their_line(planned, text, line, words):
-    done, _, _ = planned(text=text)
+    command, _, _ = planned(text=text)
     assert (
-        done.status == 2
-        and line in done.err
-        and words in done.err
-        and done.err.count("error[") == 1
-    ), done.err
+        command.status == 2
+        and line in command.err
+        and words in command.err
+        and command.err.count("error[") == 1
+    ), command.err
 
 
 def test_curves_that_lie_on_one_another_are_told(planned):
-    """A bead of 40 mm with another of 30 mm 1 mm beside it, each 4 mm wide and 2 mm high."""
-    done, report, _ = planned(text="0,0,0,1\n40,0,0,1\n5,1,0,2\n35,1,0,2\n")
-    assert done.status == 0, done.err
+    """A bead of 40 mm is 1 mm from another of 30 mm; both are 4 mm wide and 2 mm high."""
+    command, report, _ = planned(text="0,0,0,1\n40,0,0,1\n5,1,0,2\n35,1,0,2\n")
+    assert command.status == 0, command.err
     assert report["deposit"]["twice_cm3"] == pytest.approx(30.0 * 3.0 * 2.0 / 1000.0, rel=0.03)
     assert report["deposit"]["left_out_cm3"] is None and report["on_part"] is None
-    (told,) = [issue for issue in report["issues"] if issue["code"] == "DEPOSITED_TWICE"]
-    assert told["level"] == "warning" and "32 % of the beads of beads" in told["message"]
-    promises = {one["promise"]: one for one in report["preflight"]}
+    (issue_,) = [issue for issue in report["issues"] if issue["code"] == "DEPOSITED_TWICE"]
+    assert issue_["level"] == "warning" and "32 % of the beads of beads" in issue_["message"]
+    promises = {entry["promise"]: entry for entry in report["preflight"]}
     assert (
         promises["Over-deposition is small"]["ok"] is False
         and promises["The whole part is deposited"]["ok"] is None
@@ -145,85 +147,90 @@ def test_curves_that_lie_on_one_another_are_told(planned):
     ],
 )
 def test_keys_that_do_not_fit_are_told(planned, part, more, mode, code):
-    done, _, _ = planned(part=part, more=more, mode=mode)
-    assert done.status == 2 and f"error[{code}]" in done.err, done.err
+    command, _, _ = planned(part=part, more=more, mode=mode)
+    assert command.status == 2 and f"error[{code}]" in command.err, command.err
 
 
 def test_a_bead_along_its_own_direction_is_refused(planned):
-    done, _, _ = planned(text="0,0,0\n0,0,10\n")
-    assert done.status == 2 and "error[ALONG_DIRECTION]" in done.err, done.err
+    command, _, _ = planned(text="0,0,0\n0,0,10\n")
+    assert command.status == 2 and "error[ALONG_DIRECTION]" in command.err, command.err
 
 
 def test_edges_lie_on_their_shape_with_the_normals_of_its_faces(planned, workshop):
-    """The ends of a cylinder lying down, with the normals of its side."""
+    """The ends of a horizontal cylinder get the normals of its side."""
     Part.makeCylinder(20, 60, V(), V(1, 0, 0)).exportStep(str(workshop.folder / "rod.step"))
-    part = Part.read(str(workshop.folder / "rod.step"))
-    round_ones = [f"Edge{k}" for k, edge in enumerate(part.Edges, 1) if edge.Closed]
+    rod = Part.read(str(workshop.folder / "rod.step"))
+    round_ones = [f"Edge{k}" for k, edge in enumerate(rod.Edges, 1) if edge.Closed]
     side = next(
         f"Face{k}"
-        for k, face in enumerate(part.Faces, 1)
+        for k, face in enumerate(rod.Faces, 1)
         if face.Surface.TypeId == "Part::GeomCylinder"
     )
-    more = f", edges: [{', '.join(round_ones)}], faces: [{side}]"
-    done, report, rows = planned("rod.step", part=more, more=", repeat: 2")
-    assert done.status == 0, done.err
+    options = f", edges: [{', '.join(round_ones)}], faces: [{side}]"
+    command, report, rows = planned("rod.step", part=options, more=", repeat: 2")
+    assert command.status == 0, command.err
     points, build = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, "bx", "by", "bz")
     layer = column(rows, "layer")[:, 0]
     radius = np.hypot(points[:, 1], points[:, 2])
     np.testing.assert_allclose(radius, 20.0 + 2.0 * layer, atol=1e-5)
     np.testing.assert_allclose(build[:, 1:], points[:, 1:] / radius[:, None], atol=1e-6)
     assert report["counts"]["beads"] == 4
-    looked = report["on_part"]
+    on_part = report["on_part"]
     assert (
-        0.0 < looked["worst_mm"] < looked["allowed_mm"] == pytest.approx(0.07)
-        and looked["places"] > 100
+        0.0 < on_part["worst_mm"] < on_part["allowed_mm"] == pytest.approx(0.07)
+        and on_part["places"] > 100
     )
     chord = np.linalg.norm(np.diff(points[:10], axis=0), axis=1).max()
     assert (
         chord**2 / (8.0 * 20.0) < 0.06
-    )  # within the chord error, or as near as directions ask for
+    )  # within the chord error, or as near as directions require
 
 
 def test_edges_off_the_faces_are_refused(planned, workshop):
     Part.makeBox(20, 20, 20).exportStep(str(workshop.folder / "box.step"))
-    part = Part.read(str(workshop.folder / "box.step"))
+    box = Part.read(str(workshop.folder / "box.step"))
     top = next(
-        f"Face{k}" for k, face in enumerate(part.Faces, 1) if abs(face.CenterOfMass.z - 20) < 1e-6
+        f"Face{k}" for k, face in enumerate(box.Faces, 1) if abs(face.CenterOfMass.z - 20) < 1e-6
     )
-    low = next(f"Edge{k}" for k, edge in enumerate(part.Edges, 1) if edge.BoundBox.ZMax < 1e-6)
-    done, _, _ = planned("box.step", part=f", edges: [{low}], faces: [{top}]")
-    assert done.status == 2 and "error[OFF_FACE]" in done.err and "20 mm off" in done.err, done.err
+    low = next(f"Edge{k}" for k, edge in enumerate(box.Edges, 1) if edge.BoundBox.ZMax < 1e-6)
+    command, _, _ = planned("box.step", part=f", edges: [{low}], faces: [{top}]")
+    assert (
+        command.status == 2 and "error[OFF_FACE]" in command.err and "20 mm off" in command.err
+    ), command.err
 
 
 def test_the_example_lays_the_points_of_its_table(workshop, root):
-    """Twice over one another; the rose has six leaves of 5 mm about 34 mm, the ring 18 mm."""
+    """Two layers of a rose with six leaves of 5 mm about 34 mm, and of a ring of 18 mm."""
     for name in ("rosette.csv", "rosette.yaml"):
         shutil.copy(root / "resources" / "examples" / name, workshop.folder)
     path = workshop.folder / "rosette.yaml"
     path.write_text(
         path.read_text(encoding="utf-8").replace("repeat: 8", "repeat: 2"), encoding="utf-8"
     )
-    done = workshop.run("plan", path.name, "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", path.name, "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     cell = read_job(str(path)).cell
     assert row_limits.over_all(workshop.folder / "out", cell.machine, cell.limits) <= 0.0
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
-    places = column(rows, "x_mm", "y_mm", "z_mm")
-    radius, angle = np.hypot(places[:, 0], places[:, 1]), np.arctan2(places[:, 1], places[:, 0])
+    positions = column(rows, "x_mm", "y_mm", "z_mm")
+    radius, angle = (
+        np.hypot(positions[:, 0], positions[:, 1]),
+        np.arctan2(positions[:, 1], positions[:, 0]),
+    )
     rose = np.array([int(row["bead"]) == 0 for row in rows])
     assert (
         np.abs(radius[rose] - 34.0 - 5.0 * np.cos(6.0 * angle[rose])).max() < 0.2
     )  # chords of the table
-    assert np.abs(radius[~rose] - 18.0).max() < 0.01 and set(places[:, 2].round(6)) == {0.0, 2.0}
+    assert np.abs(radius[~rose] - 18.0).max() < 0.01 and set(positions[:, 2].round(6)) == {0.0, 2.0}
 
 
 def test_a_program_of_a_slicer_is_laid_in_its_layers(planned):
     text = "".join(
         f";LAYER:{k}\nG0 X0 Y0 Z{2 * k + 2}\nG1 X30 E1\nG3 X30 Y20 I0 J10 E1\n" for k in range(2)
     )
-    done, report, rows = planned("slicer.gcode", "G21\nM83\n" + text)
-    assert done.status == 0, done.err
+    command, report, rows = planned("slicer.gcode", "G21\nM83\n" + text)
+    assert command.status == 0, command.err
     assert (
         report["counts"]["layers"] == report["counts"]["beads"] == 2
         and report["unsupported_mm"] == 0.0
@@ -237,24 +244,26 @@ def test_a_program_of_a_slicer_is_laid_in_its_layers(planned):
     np.testing.assert_allclose(
         column(rows, "bx", "by", "bz"), np.tile([0, 0, 1], (len(rows), 1)), atol=1e-12
     )
-    for part, words in (
+    for options_, words in (
         ("G20\n", "none of the moves extrudes"),
         ("G0 X1\n", "none of the moves extrudes"),
     ):
-        done, _, _ = planned("slicer.gcode", part)
-        assert done.status == 2 and "error[BAD_GCODE]" in done.err and words in done.err, done.err
+        command, _, _ = planned("slicer.gcode", options_)
+        assert command.status == 2 and "error[BAD_GCODE]" in command.err and words in command.err, (
+            command.err
+        )
 
 
 def test_a_turn_of_a_vase_may_end_where_it_turns_back(workshop, planned):
-    done, report, rows = planned(
+    command, report, rows = planned(
         "vase.gcode", "M83\nG0 X0 Y0 Z0.4\nG1 X10 E1\nG1 X0 Z0.8 E1\nG1 X10 Z0.8 E1\n"
     )
-    assert done.status == 0, done.err
+    assert command.status == 0, command.err
     assert report["length_mm"] == pytest.approx(20.0 + np.hypot(10.0, 0.4))
     assert np.isfinite(column(rows, "tx", "ty", "tz")).all()
     for moves in ("G1 Z5 E1\nG1 Z9 E1", "G1 Z5 E1\nG1 X0 E1", "G1 Z5 E1\nG1 X20 E1"):
-        done, _, _ = planned("up.gcode", f"M83\nG0 X0 Y0 Z0.4\nG1 X10 E1\n{moves}\n")
-        assert done.status == 2 and "error[ALONG_DIRECTION]" in done.err, done.err
+        command, _, _ = planned("up.gcode", f"M83\nG0 X0 Y0 Z0.4\nG1 X10 E1\n{moves}\n")
+        assert command.status == 2 and "error[ALONG_DIRECTION]" in command.err, command.err
 
 
 def test_roles_of_g_code_in_a_job_file(workshop):
@@ -266,20 +275,20 @@ def test_roles_of_g_code_in_a_job_file(workshop):
         "roles: [part, skirt], ": 72.0,
         "roles: [Custom], ": 60.0,
     }
-    for roles, wanted in lengths.items():
+    for roles, expected in lengths.items():
         job = workshop.write_job(
             "version: 1\nname: s\npart: {file: s.gcode}\nprocess: {bead_width: 4 mm}\n"
             f"strategy: {{kind: curves, {roles}layer_height: 2 mm}}\n"
         )
-        done = workshop.run("plan", job.name, "-o", "out", "--no-page")
-        assert done.status == 0, done.err
+        command = workshop.run("plan", job.name, "-o", "out", "--no-page")
+        assert command.status == 0, command.err
         report = json.loads((workshop.folder / "out" / "report.json").read_text())
-        assert report["length_mm"] == pytest.approx(wanted) and report["unsupported_mm"] == 0.0
-        assert ("ROLES_LEFT_OUT" in done.err) == ("all" not in roles)
+        assert report["length_mm"] == pytest.approx(expected) and report["unsupported_mm"] == 0.0
+        assert ("ROLES_LEFT_OUT" in command.err) == ("all" not in roles)
 
 
 def test_beads_that_begin_beside_the_end_of_others_have_a_kuka_program(workshop):
-    """The way over is so short that the axes would need less than the least share of their speeds that KRL is told."""
+    """The travel is so short that the axes would need less than the smallest speed share of KRL."""
     (workshop.folder / "beads.csv").write_text(
         "x,y,z,bead\n0,0,0,1\n30,0,0,1\n30.4,0,0,2\n60,0,0,2\n"
     )
@@ -290,8 +299,8 @@ cell: {machine: kuka-kr8-r2100-2-arc-hw, setup: tool-on-robot, branch: auto, noz
 program: {post: kuka, motion: cartesian}
 """
     )
-    done = workshop.run("plan", job.name, "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", job.name, "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     assert (
         next(workshop.folder.rglob("*.src")).read_text(encoding="ascii").count("BAS(#VEL_PTP,1)")
         == 1
@@ -299,7 +308,7 @@ program: {post: kuka, motion: cartesian}
 
 
 def test_a_sketch_of_a_document_is_laid_where_it_stands(workshop, planned):
-    """Two lines and an arc, on a plane that leans: read back from the text of their own placement."""
+    """Two lines and an arc on an inclined plane are transformed back by their own placement."""
     placement = FreeCAD.Placement(V(5, -7, 30), FreeCAD.Rotation(V(1, 0, 0), 25))
     document = FreeCAD.newDocument("Drawn")
     try:
@@ -318,8 +327,8 @@ def test_a_sketch_of_a_document_is_laid_where_it_stands(workshop, planned):
     finally:
         FreeCAD.closeDocument(document.Name)
     content = (workshop.folder / "drawn.FCStd").read_bytes()
-    done, report, rows = planned("drawn.FCStd", content, part=", object: Path")
-    assert done.status == 0, done.err
+    command, report, rows = planned("drawn.FCStd", content, part=", object: Path")
+    assert command.status == 0, command.err
     back = np.array(
         [placement.inverse().multVec(V(*point)) for point in column(rows, "x_mm", "y_mm", "z_mm")]
     )
@@ -329,12 +338,12 @@ def test_a_sketch_of_a_document_is_laid_where_it_stands(workshop, planned):
     )
     on_arc = np.abs(np.hypot(back[:, 0] - 30.0, back[:, 1] - 10.0) - 10.0) < 1e-5
     assert (on_lines | on_arc).all() and on_arc.sum() > 10
-    ways = np.linalg.norm(np.diff(back, axis=0), axis=1).sum()
-    assert ways == pytest.approx(60.0 + 10.0 * np.pi, abs=0.2)
+    length = np.linalg.norm(np.diff(back, axis=0), axis=1).sum()
+    assert length == pytest.approx(60.0 + 10.0 * np.pi, abs=0.2)
 
 
 def test_a_program_counts_from_a_base_frame_that_is_not_known(workshop):
-    """Of a Cartesian program alone: joint values count from no frame."""
+    """Only a Cartesian program depends on a frame; joint values do not."""
     (workshop.folder / "beads.csv").write_text("x,y,z,bead\n0,0,0,1\n30,0,0,1\n")
     for motion, machine, warned in (
         ("cartesian", "staubli-rx60b", True),
@@ -346,9 +355,9 @@ def test_a_program_counts_from_a_base_frame_that_is_not_known(workshop):
             + f"cell: {{machine: {machine}, setup: tool-on-robot, branch: auto, nozzle: {{tool: [0, 0, 200, 0, 0, 0]}}}}\n"
             f"program: {{post: staubli, motion: {motion}}}\n"
         )
-        done = workshop.run("plan", job.name, "-o", "out", "--no-page")
-        assert done.status == 0, done.err
-        assert ("warning[BASE_NOT_KNOWN]" in done.err) == warned, done.err
+        command = workshop.run("plan", job.name, "-o", "out", "--no-page")
+        assert command.status == 0, command.err
+        assert ("warning[BASE_NOT_KNOWN]" in command.err) == warned, command.err
         text = "".join(path.read_text() for path in (workshop.folder / "out").rglob("start.pgx"))
         assert ("Base frame not known" in text) == warned
 
@@ -362,7 +371,7 @@ def test_the_size_of_a_program_is_told_before_joints_are_planned():
     from freecad_am.core.strategies import curves
     from freecad_am.objects.checks import controllers
 
-    def told(points, post):
+    def size_message(points, post):
         line = np.column_stack([np.linspace(0.0, 600.0, points), np.zeros((points, 2))])
         given = Curves("line", (BeadCurve(line), BeadCurve(line + (0.0, 9.0, 0.0))))
         toolpath = curves.plan(
@@ -370,11 +379,11 @@ def test_the_size_of_a_program_is_told_before_joints_are_planned():
         )
         return controllers.size_issues(toolpath, ProgramParameters(post=post, max_points=1800))
 
-    (issue,) = told(30_050, "kuka")
+    (issue,) = size_message(30_050, "kuka")
     assert (issue.level, issue.code) == ("warning", "PROGRAM_SIZE")
     assert "60,000 points in 35 files, 4.5 MB" in issue.message and "4 MB" in issue.message
-    (issue,) = told(20_000, "kuka")
+    (issue,) = size_message(20_000, "kuka")
     assert issue.level == "note" and "3 MB" in issue.message
-    (issue,) = told(20_000, "linuxcnc")
+    (issue,) = size_message(20_000, "linuxcnc")
     assert issue.level == "note" and "controller is unknown" in issue.message
-    assert told(2_000, "kuka") == [] and told(30_050, "none") == []
+    assert size_message(2_000, "kuka") == [] and size_message(30_050, "none") == []

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A job with a positioner, from the file to its rows, and what of such a file is refused."""
+"""A job with a positioner, from the file to its rows, and the values of such a file that are
+rejected."""
 
 import csv
 import json
@@ -19,12 +20,13 @@ from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import external
 from tests.core.kinematics import urdf_cells
 
-MOST = 10.0  # deg, of the job
+MAX_LEAN_DEG = 10.0  # deg, in the job
 
 
 @pytest.fixture
 def written(workshop, root):
-    """The example with thick layers in a folder of its own, changed; its path."""
+    """Write the example with thick layers and changes in a folder of its own, and return its
+    path."""
 
     def write(change=lambda job: None):
         folder = root / "resources" / "examples"
@@ -40,7 +42,8 @@ def written(workshop, root):
 
 
 def from_vertical(row):
-    """How far, deg, the row's tool axis is from the vertical: the D500 tilts about -Y, then turns about -Z (its file)."""
+    """Return the angle of the row's tool axis from the vertical in deg: the D500 tilts about -Y,
+    then turns about -Z (its file)."""
     tilt, turn = (-math.radians(float(row[name])) for name in ("e1_deg", "e2_deg"))
     about_y = np.array(
         [[math.cos(tilt), 0, math.sin(tilt)], [0, 1, 0], [-math.sin(tilt), 0, math.cos(tilt)]]
@@ -54,35 +57,38 @@ def from_vertical(row):
 
 def test_rows_and_report_say_where_the_positioner_is(workshop, written):
     written()
-    done = workshop.run("plan", "dome.yaml", "-o", "out")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "dome.yaml", "-o", "out")
+    assert command.status == 0, command.err
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0])[-4:] == ["q6_deg", "e1_deg", "e2_deg", "class"]
     leaning = max(from_vertical(row) for row in rows if row["kind"] == "deposit")
-    assert leaning <= MOST + 1e-4
+    assert leaning <= MAX_LEAN_DEG + 1e-4
     assert all(
         abs(float(row["e1_deg"])) <= 134.9946 and abs(float(row["e2_deg"])) <= 199.9966
         for row in rows
     )
 
-    told = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
-    axes = told["joints"]["external"]
+    report_data = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
+    axes = report_data["joints"]["external"]
     assert axes["from_vertical_max_deg"] == pytest.approx(leaning, abs=1e-3)
     turned = sum(
-        abs(float(other["e2_deg"]) - float(one["e2_deg"]))
-        for one, other in zip(rows, rows[1:])
-        if one["kind"] == other["kind"] == "deposit"
-        and (one["layer"], one["bead"]) == (other["layer"], other["bead"])
+        abs(float(following["e2_deg"]) - float(row["e2_deg"]))
+        for row, following in zip(rows, rows[1:])
+        if row["kind"] == following["kind"] == "deposit"
+        and (row["layer"], row["bead"]) == (following["layer"], following["bead"])
     )
     assert axes["turned_deg"]["e2"] == pytest.approx(turned, abs=1.0)
-    assert len(told["joints"]["min_deg"]) == 8 and told["machine"]["axes"][-2:] == ["e1", "e2"]
+    assert len(report_data["joints"]["min_deg"]) == 8 and report_data["machine"]["axes"][-2:] == [
+        "e1",
+        "e2",
+    ]
 
 
 def test_exports_of_the_saved_document_have_the_positioner(workshop, written):
     written()
-    done = workshop.run("plan", "dome.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "dome.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     document = FreeCAD.openDocument(str(next((workshop.folder / "out").glob("*.FCStd"))))
     try:
         (path,) = api.stages_of(document, "joint path")
@@ -99,23 +105,23 @@ def test_exports_of_the_saved_document_have_the_positioner(workshop, written):
 
 
 def test_the_program_takes_the_positioner_along(workshop, written):
-    """What the text says of the positioner is what the rows say, and what the robot is told is seen from its face."""
+    """The text has the positioner values of the rows, and robot positions relative to its face."""
     written()
-    done = workshop.run("plan", "dome.yaml", "-o", "out")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "dome.yaml", "-o", "out")
+    assert command.status == 0, command.err
     (program,) = (workshop.folder / "out" / "program").iterdir()
     text = program.read_text(encoding="ascii")
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    told = re.findall(
+    positions = re.findall(
         r"LIN \{X ([-.\d]+),Y ([-.\d]+),Z ([-.\d]+),.*,E1 ([-.\d]+),E2 ([-.\d]+)\}", text
     )
     # a bead begins where the rapid before it ended
     alike = ("kind", "layer", "bead")
     deposit = [
         row
-        for one, row in zip(rows, rows[1:])
-        if row["kind"] == "deposit" and all(one[k] == row[k] for k in alike)
+        for previous, row in zip(rows, rows[1:])
+        if row["kind"] == "deposit" and all(previous[k] == row[k] for k in alike)
     ]
     due = np.array(
         [
@@ -123,19 +129,17 @@ def test_the_program_takes_the_positioner_along(workshop, written):
             for row in deposit
         ]
     )
-    apart = np.array(told, dtype=float) - due
-    assert (
-        np.ptp(apart[:, :3], axis=0).max() <= 1.1e-3
-    )  # the part's file may have its zero elsewhere
-    assert np.abs(apart[:, 3:]).max() <= 5.1e-5 and np.ptp(due[:, 4]) > 300.0
+    errors = np.array(positions, dtype=float) - due
+    assert np.ptp(errors[:, :3], axis=0).max() <= 1.1e-3  # the part's file may have another origin
+    assert np.abs(errors[:, 3:]).max() <= 5.1e-5 and np.ptp(due[:, 4]) > 300.0
     assert text.count("$BASE=EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,BASE_DATA[1])") == 1
 
 
-def columns(workshop, first):
-    """Waypoints of the job as numbers, without its class, from a column on."""
+def columns(workshop, first_name):
+    """Return the waypoints of the job as numbers, without the class, from a column on."""
     lines = workshop.files("out")["waypoints.csv"].decode().splitlines()
-    at = lines[0].split(",").index(first)
-    return np.array([[float(word) for word in line.split(",")[at:-1]] for line in lines[1:]])
+    index = lines[0].split(",").index(first_name)
+    return np.array([[float(word) for word in line.split(",")[index:-1]] for line in lines[1:]])
 
 
 @pytest.mark.parametrize(
@@ -154,28 +158,31 @@ def test_a_positioner_that_no_file_tells_the_shape_of_is_told_to_be_passed_over(
         del job["program"]
 
     written(change)
-    done = workshop.run("plan", "dome.yaml", "-o", "out", "--no-page")
+    command = workshop.run("plan", "dome.yaml", "-o", "out", "--no-page")
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
-    found = [
-        (one["level"], one["message"])
-        for one in report["issues"]
-        if one["code"] == "BODIES_NOT_KNOWN"
+    messages = [
+        (issue["level"], issue["message"])
+        for issue in report["issues"]
+        if issue["code"] == "BODIES_NOT_KNOWN"
     ]
-    assert len(found) == done.err.count("note[BODIES_NOT_KNOWN] job: ") == bool(untold), done.err
-    assert all(level == "note" and message.startswith(untold) for level, message in found)
+    assert len(messages) == command.err.count("note[BODIES_NOT_KNOWN] job: ") == bool(untold), (
+        command.err
+    )
+    assert all(level == "note" and message.startswith(untold) for level, message in messages)
     (line,) = [
-        one["how"]
-        for one in report["preflight"]
-        if one["promise"].startswith("Positioner and track")
+        entry["how"]
+        for entry in report["preflight"]
+        if entry["promise"].startswith("Positioner and track")
     ]
     assert ("not checked: no file describes" in line) == bool(untold)
 
 
 def test_one_urdf_of_a_whole_cell_moves_as_its_mechanisms_named_one_by_one(workshop, written):
-    """Robot on a track, and a positioner, told apart by the tree; the cell by hand has the figures of the maker's files."""
+    """The tree separates robot on a track and positioner; the cell by hand has the values of the
+    manufacturer's files."""
     (workshop.folder / "cell.urdf").write_text(urdf_cells.whole_cell(), encoding="utf-8")
 
-    def whole(job):
+    def name_whole_cell(job):
         job["cell"].update(machine="cell.urdf", external="urdf")
         job["program"] = {"post": "none"}
 
@@ -192,31 +199,39 @@ def test_one_urdf_of_a_whole_cell_moves_as_its_mechanisms_named_one_by_one(works
 
     def by_link(job):
         by_hand(job)
-        for one, name in zip(job["cell"]["external"], ("track", "positioner"), strict=True):
+        for mechanism, name in zip(job["cell"]["external"], ("track", "positioner"), strict=True):
             tip = "robot_base_link" if name == "track" else f"{name}_tool0"
-            one["machine"] = {"file": "cell.urdf", "base": f"{name}_base_link", "tip": tip}
+            mechanism["machine"] = {"file": "cell.urdf", "base": f"{name}_base_link", "tip": tip}
 
-    found = []
-    for change in (by_hand, whole, by_link):
+    joint_columns = []
+    for change in (by_hand, name_whole_cell, by_link):
         written(change)
-        done = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
-        assert done.status == 0, done.err
-        found.append(columns(workshop, "q1_deg"))
-    assert found[0].shape[0] > 100 and found[0].shape[1] == 9 and np.ptp(found[0][:, 8]) > 300.0
-    # degrees of the machine files are rounded by the URDF in the last digits of a double
-    np.testing.assert_allclose(found[1], found[0], atol=2e-5)
-    np.testing.assert_allclose(found[2], found[0], atol=2e-5)
+        command = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
+        assert command.status == 0, command.err
+        joint_columns.append(columns(workshop, "q1_deg"))
+    assert (
+        joint_columns[0].shape[0] > 100
+        and joint_columns[0].shape[1] == 9
+        and np.ptp(joint_columns[0][:, 8]) > 300.0
+    )
+    # the URDF rounds degrees of the machine files to the last digits of a double
+    np.testing.assert_allclose(joint_columns[1], joint_columns[0], atol=2e-5)
+    np.testing.assert_allclose(joint_columns[2], joint_columns[0], atol=2e-5)
 
 
 def test_a_part_too_heavy_for_its_table_gets_no_program(workshop, written):
-    told = json.loads(
+    report_data = json.loads(
         (external.MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8")
     )
-    told["payload"] = {"kg": 0.5, "source": "the plate"}
-    (workshop.folder / "light.json").write_text(json.dumps(told), encoding="utf-8")
+    report_data["payload"] = {"kg": 0.5, "source": "the plate"}
+    (workshop.folder / "light.json").write_text(json.dumps(report_data), encoding="utf-8")
     written(lambda job: job["cell"]["external"][0].update(machine="light.json"))
-    done = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
-    assert done.status == 3 and "error[PAYLOAD]" in done.err and "), the payload of" in done.err
+    command = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
+    assert (
+        command.status == 3
+        and "error[PAYLOAD]" in command.err
+        and "), the payload of" in command.err
+    )
     report = json.loads(workshop.files("out")["report.json"])
     assert report["status"] == "infeasible" and report["programs"] == []
     assert report["totals"]["mass_g"] > 500.0
@@ -226,9 +241,9 @@ def test_a_part_too_heavy_for_its_table_gets_no_program(workshop, written):
             job["process"].update(density=2.7),
         )
     )
-    done = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
+    command = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
     assert (
-        done.status == 0
+        command.status == 0
         and json.loads(workshop.files("out")["report.json"])["totals"]["mass_g"] < 500.0
     )
 
@@ -257,8 +272,8 @@ def test_a_part_too_heavy_for_its_table_gets_no_program(workshop, written):
 )
 def test_refused_when_it_is_planned(workshop, written, change, code, where):
     written(change)
-    done = workshop.run("plan", "dome.yaml", "-o", "out")
-    assert done.status == 2 and code in done.err and where in done.err
+    command = workshop.run("plan", "dome.yaml", "-o", "out")
+    assert command.status == 2 and code in command.err and where in command.err
     assert not (workshop.folder / "out").exists()
 
 
@@ -312,22 +327,26 @@ def test_refused_when_it_is_read(written, change, code, where):
 
 
 def test_the_rotor_moves_less_with_its_axes_optimised(workshop, root):
-    """The example with thick layers: report and rows, which the program was read back against."""
+    """The check uses report and rows of the example with thick layers, with which the program was
+    compared."""
     folder = root / "resources" / "examples"
     job = yaml.safe_load((folder / "rotor-on-positioner.yaml").read_text(encoding="utf-8"))
     for key in ("part", "substrate"):
         job[key]["file"] = str(folder / job[key]["file"])
     job["strategy"].update(layer_height="12 mm", bead_spacing="16 mm")
     (workshop.folder / "rotor.yaml").write_text(yaml.safe_dump(job), encoding="utf-8")
-    done = workshop.run("plan", "rotor.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
-    told = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))[
+    command = workshop.run("plan", "rotor.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
+    report_data = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))[
         "joints"
     ]["external"]
-    level = told["level"]
-    assert told["rule"] == "optimised" and told["objective_value"] < 0.7 * level["objective_value"]
-    assert told["least_margin"] > 1.1 * level["least_margin"] > 0.0
-    assert told["from_vertical_max_deg"] <= 30.0 + 1e-6
+    level = report_data["level"]
+    assert (
+        report_data["rule"] == "optimised"
+        and report_data["objective_value"] < 0.7 * level["objective_value"]
+    )
+    assert report_data["least_margin"] > 1.1 * level["least_margin"] > 0.0
+    assert report_data["from_vertical_max_deg"] <= 30.0 + 1e-6
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as file:
         rows = [row for row in csv.DictReader(file) if row["kind"] == "deposit"]
     assert max(map(from_vertical, rows)) <= 30.0 + 1e-4
@@ -343,11 +362,11 @@ def test_the_rotor_moves_less_with_its_axes_optimised(workshop, root):
     angles = np.array([[float(row[name]) for name in list(row)[-9:-1]] for row in rows])
     same = np.array(
         [
-            (one["layer"], one["bead"]) == (row["layer"], row["bead"])
-            for one, row in zip(rows, rows[1:])
+            (previous["layer"], previous["bead"]) == (row["layer"], row["bead"])
+            for previous, row in zip(rows, rows[1:])
         ]
     )
     moved = float(np.radians(np.diff(angles, axis=0)[same] ** 2 / np.array(stroke)).sum())
     assert moved == pytest.approx(
-        told["objective_value"], rel=0.05
-    )  # points added in between make less of it
+        report_data["objective_value"], rel=0.05
+    )  # points added in between reduce it

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jobs of several features: their keys and refusals, and from the waypoints and text, with OpenCASCADE, that each lies on
-its part, that what comes later keeps clear of what is there, and that layers are numbered through."""
+"""Jobs of several features: keys and refusals. Waypoints and text, checked with OpenCASCADE, show
+that each feature is on its part, that later ones keep clear of earlier ones, and that layers have
+consecutive numbers."""
 
 import csv
 import json
@@ -46,13 +47,13 @@ def test_what_stands_at_the_top_is_the_default_of_all(read):
 sequence: height
 """
     )
-    assert [one.name for one in job.features] == [
+    assert [feature.name for feature in job.features] == [
         "plate",
         "post",
         "feature 3",
     ] and job.sequence == "height"
-    assert [one.strategy.layer_height for one in job.features] == [5.0, 2.0, 5.0]
-    assert [one.process.travel_speed for one in job.features] == [6.0, 6.0, 9.0]
+    assert [feature.strategy.layer_height for feature in job.features] == [5.0, 2.0, 5.0]
+    assert [feature.process.travel_speed for feature in job.features] == [6.0, 6.0, 9.0]
     assert (
         job.features[1].process.seam.angle == pytest.approx(math.pi / 2)
         and job.process.seam.angle == 0.0
@@ -67,19 +68,19 @@ def test_defaults_that_a_family_does_not_have_are_left_out(read):
         "  - {name: a}\n  - {name: b, part: {solids: [Solid2]}, strategy: {kind: revolution}}\n"
         "  - {name: c, strategy: {kind: developable}}\n  - {name: d, part: {file: wall.stl}}\n"
     )
-    first, second, third, fourth = job.features
-    assert (first.part.solids, second.part.solids, fourth.part.solids) == (
+    revolution, solid, surface_, curves_ = job.features
+    assert (revolution.part.solids, solid.part.solids, curves_.part.solids) == (
         ("Solid1",),
         ("Solid2",),
         (),
     )
-    assert first.substrate.file.endswith("post.step") and second.substrate is None
-    assert (second.strategy.layer_height, second.process.bead_model, third.process.bead_model) == (
+    assert revolution.substrate.file.endswith("post.step") and solid.substrate is None
+    assert (solid.strategy.layer_height, solid.process.bead_model, surface_.process.bead_model) == (
         2.0,
         "none",
         "csw",
     )
-    assert (second.build_direction.mode, third.build_direction.mode) == ("fixed", "local")
+    assert (solid.build_direction.mode, surface_.build_direction.mode) == ("fixed", "local")
 
 
 @pytest.mark.parametrize(
@@ -148,14 +149,18 @@ def test_a_list_that_is_none(read, features):
 
 
 def planned(workshop, text, **shapes):
-    """Ended, report and rows of waypoints of a job with parts of these names."""
+    """Return end, report and rows of waypoints of a job with parts of these names."""
     for name, shape in shapes.items():
         shape.exportStep(str(workshop.folder / f"{name}.step"))
     (workshop.folder / "job.yaml").write_text(text, encoding="utf-8")
-    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+    command = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
     report = workshop.folder / "out" / "report.json"
     rows = waypoints(workshop.folder) if report.is_file() else []
-    return done, json.loads(report.read_text(encoding="utf-8")) if report.is_file() else None, rows
+    return (
+        command,
+        json.loads(report.read_text(encoding="utf-8")) if report.is_file() else None,
+        rows,
+    )
 
 
 def waypoints(folder):
@@ -172,38 +177,44 @@ JOB = START + POST
 
 
 def test_a_feature_that_floats_or_overlaps_is_refused(workshop):
-    done, report, _ = planned(
+    command, report, _ = planned(
         workshop, JOB, plate=PLATE, post=Part.makeBox(10, 10, 10, Vector(100, 0, 30))
     )
-    assert done.status == 2 and report is None and "error[FLOATS] post:" in done.err
-    done, report, _ = planned(
+    assert command.status == 2 and report is None and "error[FLOATS] post:" in command.err
+    command, report, _ = planned(
         workshop, JOB, plate=PLATE, post=Part.makeCylinder(12, 30, Vector(20, 20, 15))
     )
     assert (
-        done.status == 2
+        command.status == 2
         and report is None
-        and "error[OVERLAP] post:" in done.err
-        and "overlap plate" in done.err
+        and "error[OVERLAP] post:" in command.err
+        and "overlap plate" in command.err
     )
-    assert f"{math.pi * 12**2 * 5 / 1000:.4g} cm3" in done.err
+    assert f"{math.pi * 12**2 * 5 / 1000:.4g} cm3" in command.err
     upside = START.replace("plate", "post") + POST.replace(
         "post", "plate"
-    )  # what carries it comes later
-    done, report, _ = planned(
+    )  # its support comes later
+    command, report, _ = planned(
         workshop, upside, plate=PLATE, post=Part.makeCylinder(12, 30, Vector(20, 20, 20))
     )
-    assert done.status == 2 and "error[FLOATS] post:" in done.err
+    assert command.status == 2 and "error[FLOATS] post:" in command.err
 
 
 def test_what_holds_for_the_whole_program_is_no_features_own(workshop):
     text = JOB.replace("post.step}}", "post.step}, process: {rapid_speed: 5 mm/s}}")
-    done, _, _ = planned(workshop, text, plate=PLATE, post=Part.makeBox(9, 9, 9, Vector(0, 0, 20)))
-    assert done.status == 2 and "NOT_FOR_FEATURE" in done.err and "process.rapid_speed" in done.err
+    command, _, _ = planned(
+        workshop, text, plate=PLATE, post=Part.makeBox(9, 9, 9, Vector(0, 0, 20))
+    )
+    assert (
+        command.status == 2
+        and "NOT_FOR_FEATURE" in command.err
+        and "process.rapid_speed" in command.err
+    )
 
 
 def test_a_list_of_one_is_the_job_without_it(workshop):
-    done, report, listed = planned(workshop, START, plate=PLATE)
-    assert done.status == 0 and "features" not in report
+    command, report, listed = planned(workshop, START, plate=PLATE)
+    assert command.status == 0 and "features" not in report
     plain = "part: {file: plate.step}\n" + START[: START.index("features")]
     assert planned(workshop, plain, plate=PLATE)[2] == listed
 
@@ -216,20 +227,22 @@ features:
   - {name: right, part: {file: right.step}, strategy: {layer_height: 3 mm}, process: {travel_speed: 9 mm/s}}
 """
 GAP, TALL = 4.0, 36.0
-LEFT = Part.makeBox(16, 20, TALL, Vector(0, 0, 8))
+LEFT_TOWER = Part.makeBox(16, 20, TALL, Vector(0, 0, 8))
 TOWER_PARTS = {
     "plate": Part.makeBox(36, 20, 8),
-    "left": LEFT,
+    "left": LEFT_TOWER,
     "right": Part.makeBox(16, 20, TALL, Vector(16 + GAP, 0, 8)),
 }
 
 
-SURE = Part.makeBox(15.5, 20, TALL - 4.0, Vector(0, 0, 8))  # of it, beads being round
+LEFT_TOWER_CORE = Part.makeBox(
+    15.5, 20, TALL - 4.0, Vector(0, 0, 8)
+)  # the safe core, because beads are round
 SLOPE, LENGTH = math.tan(math.radians(20.0)), 60.0
 
 
 def nozzle(point, tool, clear=4.5):
-    """The usual nozzle from a little above the tip on, as a solid."""
+    """Return the default nozzle from a little above the tip as a solid."""
     foot = Vector(*(point + clear * tool))
     return Part.makeCone(
         0.5 + clear * SLOPE, 0.5 + LENGTH * SLOPE, LENGTH - clear, foot, Vector(*tool)
@@ -237,12 +250,12 @@ def nozzle(point, tool, clear=4.5):
 
 
 def test_later_features_keep_clear_of_earlier_ones(workshop):
-    """A tower beside one that stands: the upright nozzle would cut it, the tilted one does not."""
-    done, report, rows = planned(workshop, TOWERS, **TOWER_PARTS)
-    assert done.status == 0, done.err
+    """A tower next to an earlier one: a vertical nozzle would cut it, the tilted one does not."""
+    command, report, rows = planned(workshop, TOWERS, **TOWER_PARTS)
+    assert command.status == 0, command.err
     layer, speed = of(rows, "layer").ravel(), of(rows, "speed_mm_s").ravel()
     assert sorted(set(layer)) == list(range(2 + 9 + 12)) and (np.diff(layer) >= 0).all()
-    assert [one["layers"] for one in report["features"]] == [
+    assert [feature["layers"] for feature in report["features"]] == [
         [0, 1],
         list(range(2, 11)),
         list(range(11, 23)),
@@ -252,7 +265,7 @@ def test_later_features_keep_clear_of_earlier_ones(workshop):
         of(rows, "bx", "by", "bz"),
         of(rows, "tx", "ty", "tz"),
     )
-    # layers are numbered through, and lie on their planes
+    # layers have consecutive numbers and are in their planes
     np.testing.assert_allclose(
         points[:, 2], np.where(layer < 11, 4.0 * layer, 8.0 + 3.0 * (layer - 11)), atol=1e-6
     )
@@ -260,13 +273,17 @@ def test_later_features_keep_clear_of_earlier_ones(workshop):
         np.round(speed[layer < 11], 6)
     ) == {6.0}
     np.testing.assert_allclose(tool[layer < 11], build[layer < 11], atol=1e-9)
-    near = np.flatnonzero((layer == 13) & (points[:, 0] < 16 + GAP + 5.0))
-    assert len(near) and any(nozzle(points[k], build[k]).common(SURE).Volume > 1.0 for k in near)
-    for k in near:
-        assert nozzle(points[k], tool[k]).common(SURE).Volume < 1e-6
-    volume = sum(part.Volume for part in TOWER_PARTS.values()) / 1000.0
+    near_points = np.flatnonzero((layer == 13) & (points[:, 0] < 16 + GAP + 5.0))
+    assert len(near_points) and any(
+        nozzle(points[k], build[k]).common(LEFT_TOWER_CORE).Volume > 1.0 for k in near_points
+    )
+    for k in near_points:
+        assert nozzle(points[k], tool[k]).common(LEFT_TOWER_CORE).Volume < 1e-6
+    volume = sum(tower.Volume for tower in TOWER_PARTS.values()) / 1000.0
     assert report["deposit"]["part_cm3"] == pytest.approx(volume, rel=1e-3)
-    laid = sum(one["length_mm"] * 4.0 * one["layer_height_mm"] for one in report["features"])
+    laid = sum(
+        feature["length_mm"] * 4.0 * feature["layer_height_mm"] for feature in report["features"]
+    )
     assert report["totals"]["volume_cm3"] == pytest.approx(laid / 1000.0, rel=1e-6)
 
 
@@ -279,13 +296,13 @@ features:
 
 
 def test_a_part_of_revolution_keeps_clear_of_the_flank_of_a_wider_bead_that_stands(workshop):
-    """A ring of beads of 16 mm about one of 8 mm: the upright nozzle passes the middle line of the wide beads and cuts their
-    flank, half of their width nearer."""
-    done, report, rows = planned(
+    """A ring of 16 mm beads is around one of 8 mm: a vertical nozzle passes the centre line of the
+    wide beads but cuts their flank, half of their width nearer."""
+    command, report, rows = planned(
         workshop, RINGS, outer=Part.makeCylinder(40, 32), inner=Part.makeCylinder(25, 32)
     )
-    assert done.status == 0, done.err
-    assert [len(one["layers"]) for one in report["features"]] == [9, 9]
+    assert command.status == 0, command.err
+    assert [len(feature["layers"]) for feature in report["features"]] == [9, 9]
     layer = of(rows, "layer").ravel()
     points, build, tool = (
         of(rows, "x_mm", "y_mm", "z_mm"),
@@ -295,13 +312,13 @@ def test_a_part_of_revolution_keeps_clear_of_the_flank_of_a_wider_bead_that_stan
     radius = np.hypot(points[:, 0], points[:, 1])
     np.testing.assert_allclose(radius, np.where(layer < 9, 40.0, 25.0), atol=1e-6)
     np.testing.assert_allclose(tool[layer < 9], build[layer < 9], atol=1e-9)
-    # beads are round beside: of each the half that is as wide is left
+    # beads are round at their sides: keep half of each, where it is as wide
     line, ring = (
         Part.makeCylinder(outer, 32).cut(Part.makeCylinder(inner, 32))
         for outer, inner in ((40.1, 39.9), (46.0, 34.0))
     )
-    first = np.flatnonzero(layer == 9)
-    for k in first[:: len(first) // 8]:
+    first_rows = np.flatnonzero(layer == 9)
+    for k in first_rows[:: len(first_rows) // 8]:
         upright = nozzle(points[k], build[k])
         assert upright.common(line).Volume == 0.0 and upright.common(ring).Volume > 1.0
     for k in np.flatnonzero(layer >= 9)[::11]:
@@ -309,22 +326,26 @@ def test_a_part_of_revolution_keeps_clear_of_the_flank_of_a_wider_bead_that_stan
 
 
 def test_by_height_the_lowest_layer_comes_first(workshop):
-    """So that nothing stands beside what is deposited, and no tool is tilted."""
-    done, report, rows = planned(workshop, TOWERS + "sequence: height\n", **TOWER_PARTS)
-    assert done.status == 0, done.err
+    """No higher deposit is next to the nozzle, and no tool tilts."""
+    command, report, rows = planned(workshop, TOWERS + "sequence: height\n", **TOWER_PARTS)
+    assert command.status == 0, command.err
     points, layer = of(rows, "x_mm", "y_mm", "z_mm"), of(rows, "layer").ravel()
     assert (np.diff(points[:, 2]) >= -1e-9).all() and sorted(set(layer)) == list(range(23))
-    left, right = (one["layers"] for one in report["features"][1:])
-    assert sorted([0, 1, *left, *right]) == list(range(23)) and left[1] > right[0]
-    for numbers, low, high in ((left, 0.0, 16.0), (right, 16.0 + GAP, 36.0)):
-        mine = points[np.isin(layer, numbers), 0]
-        assert low < mine.min() and mine.max() < high
+    left_layers, right_layers = (feature["layers"] for feature in report["features"][1:])
+    assert (
+        sorted([0, 1, *left_layers, *right_layers]) == list(range(23))
+        and left_layers[1] > right_layers[0]
+    )
+    for numbers, low, high in ((left_layers, 0.0, 16.0), (right_layers, 16.0 + GAP, 36.0)):
+        own_x = points[np.isin(layer, numbers), 0]
+        assert low < own_x.min() and own_x.max() < high
     np.testing.assert_allclose(of(rows, "tx", "ty", "tz"), of(rows, "bx", "by", "bz"), atol=1e-9)
     assert report["unsupported_mm"] == 0.0
 
 
 def test_the_shipped_hub_with_fins_and_branch(workshop, root):
-    """Three families in one program: each feature on its own solid or face of the file, and the text has all points."""
+    """Three families in one program: each feature is on its own solid or face of the file, and the
+    text has all points."""
     for name in ("finned-hub.step", "finned-hub.yaml"):
         shutil.copy(root / "resources" / "examples" / name, workshop.folder)
     text = (workshop.folder / "finned-hub.yaml").read_text(encoding="utf-8")
@@ -332,37 +353,41 @@ def test_the_shipped_hub_with_fins_and_branch(workshop, root):
         "chord_error: 0.02 mm", "chord_error: 0.1 mm"
     )
     (workshop.folder / "job.yaml").write_text(text, encoding="utf-8")
-    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     rows = waypoints(workshop.folder)
-    assert [one["name"] for one in report["features"]] == ["hub", "fins", "branch"] and report[
-        "status"
-    ] == "ok"
+    assert [feature["name"] for feature in report["features"]] == [
+        "hub",
+        "fins",
+        "branch",
+    ] and report["status"] == "ok"
     layer, points = of(rows, "layer").ravel(), of(rows, "x_mm", "y_mm", "z_mm")
     build, tool = of(rows, "bx", "by", "bz"), of(rows, "tx", "ty", "tz")
     assert (np.diff(layer) >= 0).all() and sorted(set(layer)) == list(
         range(report["counts"]["layers"])
     )
-    whole = Part.Shape()
-    whole.read(str(workshop.folder / "finned-hub.step"))
-    hub, *fins = whole.Solids
-    meant = {"hub": hub, "fins": Part.makeCompound(fins), "branch": whole.Faces[17]}
-    for one in report["features"]:
-        mine = np.flatnonzero(np.isin(layer, one["layers"]))
-        some = mine[:: max(1, len(mine) // 60)]
-        # a line of fill may run in the middle of the first layer's bead: on the surface of the hub
-        part = meant[one["name"]]
+    shape = Part.Shape()
+    shape.read(str(workshop.folder / "finned-hub.step"))
+    hub, *fins = shape.Solids
+    expected_shapes = {"hub": hub, "fins": Part.makeCompound(fins), "branch": shape.Faces[17]}
+    for feature in report["features"]:
+        own_rows = np.flatnonzero(np.isin(layer, feature["layers"]))
+        sample = own_rows[:: max(1, len(own_rows) // 60)]
+        # a line of fill may be in the middle of the first layer's bead, on the surface of the hub
+        expected_shape = expected_shapes[feature["name"]]
         off = max(
             0.0
-            if part.Solids
-            and any(solid.isInside(Vector(*points[k]), 1e-6, True) for solid in part.Solids)
-            else Part.Vertex(*points[k]).distToShape(part)[0]
-            for k in some
+            if expected_shape.Solids
+            and any(
+                solid.isInside(Vector(*points[k]), 1e-6, True) for solid in expected_shape.Solids
+            )
+            else Part.Vertex(*points[k]).distToShape(expected_shape)[0]
+            for k in sample
         )
-        assert len(some) > 20 and off < 0.1 + 0.02, (one["name"], off)
-        if one["name"] != "hub":
-            assert all(nozzle(points[k], tool[k], 7.0).common(hub).Volume < 1e-6 for k in some)
+        assert len(sample) > 20 and off < 0.1 + 0.02, (feature["name"], off)
+        if feature["name"] != "hub":
+            assert all(nozzle(points[k], tool[k], 7.0).common(hub).Volume < 1e-6 for k in sample)
     radial = points[np.isin(layer, report["features"][1]["layers"])]
     assert set(np.sign(radial[:, 0])) == {-1.0, 1.0}
     assert report["unsupported_mm"] == 0.0 and (np.einsum("ij,ij->i", build, tool) > 0.5).all()
@@ -373,15 +398,16 @@ def test_the_shipped_hub_with_fins_and_branch(workshop, root):
 
 
 def test_a_wall_in_the_middle_lies_on_its_part(workshop):
-    """It was refused as off the part, being measured from faces that it is halfway between."""
+    """It was once rejected as off the part, because its distance was measured from the faces on
+    both sides."""
     tube = Part.makeCylinder(30, 20).cut(Part.makeCylinder(24, 20))
-    done, report, rows = planned(
+    command, report, rows = planned(
         workshop,
         "part: {file: tube.step}\nstrategy: {wall: middle, layer_height: 5 mm, chord_error: 0.1 mm}\n"
         "process: {bead_width: 6 mm}\n",
         tube=tube,
     )
-    assert done.status == 0, done.err
+    assert command.status == 0, command.err
     assert (
         np.abs(np.hypot(*of(rows, "x_mm", "y_mm").T) - 27.0).max() < 1e-6
         and report["on_part"]["worst_mm"] < 1e-6
@@ -403,7 +429,8 @@ ELBOW = "  - {name: elbow, part: {file: elbow.step}, strategy: {kind: surface}MO
 
 
 def test_each_feature_has_the_figures_of_a_job_of_its_own(workshop):
-    """What a bead model predicts, and how else a wall may be cut, were told of jobs of one feature alone."""
+    """Predictions of a bead model and alternatives for cutting a wall were once reported only for
+    jobs of one feature."""
     Part.makeBox(50, 40, 24, Vector(0, -20, -24)).exportStep(str(workshop.folder / "block.step"))
     shell = Part.makeTorus(30.0, 8.0, Vector(-5, 0, 0), Vector(0, -1, 0), -180, 180, 50)
     shell.rotate(Vector(), Vector(0, 1, 0), -90)
@@ -412,22 +439,25 @@ def test_each_feature_has_the_figures_of_a_job_of_its_own(workshop):
 
     def report(*features, page="--no-page"):
         (workshop.folder / "job.yaml").write_text(FIGURES + "".join(features), encoding="utf-8")
-        done = workshop.run("plan", "job.yaml", "-o", "out", *([page] if page else []))
-        assert done.status == 0, done.err
+        command = workshop.run("plan", "job.yaml", "-o", "out", *([page] if page else []))
+        assert command.status == 0, command.err
         return json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
 
     block = report(BLOCK)
     elbow = report(ELBOW.replace("MORE", ", substrate: {file: block.step}"))
-    both = report(BLOCK, ELBOW.replace("MORE", ""), page="")
-    first, second = both["features"]
+    both_features = report(BLOCK, ELBOW.replace("MORE", ""), page="")
+    first_feature, second_feature = both_features["features"]
     assert (
-        first["beads"] == block["beads"]
-        and len(first["beads"]["layers"]) == 3
-        and first["spacing_comparison"] == []
+        first_feature["beads"] == block["beads"]
+        and len(first_feature["beads"]["layers"]) == 3
+        and first_feature["spacing_comparison"] == []
     )
-    assert second["spacing_comparison"] == elbow["spacing_comparison"] and second["beads"] is None
-    assert sum(row["layers"] is not None for row in second["spacing_comparison"]) > 2
-    assert both["spacing_comparison"] == [] and both["beads"] is None
+    assert (
+        second_feature["spacing_comparison"] == elbow["spacing_comparison"]
+        and second_feature["beads"] is None
+    )
+    assert sum(row["layers"] is not None for row in second_feature["spacing_comparison"]) > 2
+    assert both_features["spacing_comparison"] == [] and both_features["beads"] is None
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
     for title in (
         "Distances between layers: elbow",

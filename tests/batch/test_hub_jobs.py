@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jobs of solids on hubs: their keys and their refusals. The thruster is planned in test_thruster.py."""
+"""Jobs of solids on hubs: keys and refusals. test_thruster.py plans the thruster."""
 
 import csv
 import math
@@ -140,8 +140,8 @@ def test_a_mesh_on_a_base_given_by_numbers(workshop):
         str(workshop.folder / "blade.stl")
     )
     (workshop.folder / "blade.yaml").write_text(MESH, encoding="utf-8")
-    done = workshop.run("plan", "blade.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "blade.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     x, y, z, layer = (
@@ -153,8 +153,8 @@ def test_a_mesh_on_a_base_given_by_numbers(workshop):
         < 1e-5
     )
     assert np.abs(y).max() < 7.0 and z.min() > 60.0 and z.max() < 90.0
-    other = MESH.replace("developable", "revolution").split("  base")[0]
-    (workshop.folder / "blade.yaml").write_text(other, encoding="utf-8")
+    revolution_job = MESH.replace("developable", "revolution").split("  base")[0]
+    (workshop.folder / "blade.yaml").write_text(revolution_job, encoding="utf-8")
     refused = workshop.run("plan", "blade.yaml")
     assert (refused.status, refused.err.count("error[UNSUPPORTED_FILE]")) == (2, 1), refused.err
 
@@ -168,15 +168,15 @@ def test_a_mesh_in_another_unit_is_scaled(workshop, ending, scale, factor):
     bar = Part.makeBox(60.0, 14.0, 30.0, FreeCAD.Vector(0, -7, 60))
     points, facets = bar.tessellate(0.1)
 
-    def deposited(unit, told):
+    def deposited(unit, expected_note):
         mesh = Mesh.Mesh([[points[k] for k in facet] for facet in facets])
         mesh.transform(FreeCAD.Matrix(*(np.diag([1.0, 1.0, 1.0, unit]) / unit).ravel()))
         mesh.write(str(workshop.folder / f"blade.{ending}"))
         (workshop.folder / "blade.yaml").write_text(
-            MESH.replace("blade.stl", f"blade.{ending}{told}"), encoding="utf-8"
+            MESH.replace("blade.stl", f"blade.{ending}{expected_note}"), encoding="utf-8"
         )
-        done = workshop.run("plan", "blade.yaml", "-o", "out", "--no-page")
-        assert done.status == 0, done.err
+        command = workshop.run("plan", "blade.yaml", "-o", "out", "--no-page")
+        assert command.status == 0, command.err
         with open(
             workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline=""
         ) as stream:
@@ -193,9 +193,10 @@ def test_a_mesh_in_another_unit_is_scaled(workshop, ending, scale, factor):
     deposited(factor, f", scale: {scale}")
     document = FreeCAD.openDocument(str(workshop.folder / "out" / "blade.FCStd"))
     try:
-        (part,) = document.findObjects("Mesh::Feature")
-        assert part.FileScale.Value == factor and part.Mesh.BoundBox.XMax == pytest.approx(
-            60.0, rel=1e-6
+        (mesh_object,) = document.findObjects("Mesh::Feature")
+        assert (
+            mesh_object.FileScale.Value == factor
+            and mesh_object.Mesh.BoundBox.XMax == pytest.approx(60.0, rel=1e-6)
         )
     finally:
         FreeCAD.closeDocument(document.Name)

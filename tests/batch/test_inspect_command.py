@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command `inspect`: tables, data and a page from files of measured points, of a job and of a saved document."""
+"""The command `inspect` writes tables, data and a page from files of measured points, a job and a
+saved document."""
 
 import csv
 import json
@@ -20,14 +21,14 @@ def examples(root):
 
 @pytest.fixture
 def spheres(examples, tmp_path):
-    """Two files of fewer points than the example's."""
+    """Return two files with fewer points than the example's."""
     lines = (examples / "inspection" / "hemisphere-synthetic.csv").read_text().splitlines()
-    found = []
+    paths = []
     for number in (0, 1):
         path = tmp_path / f"sphere {number + 1}.csv"
         path.write_text("\n".join([*lines[:3], *lines[3 + number :: 5]]))
-        found.append(str(path))
-    return found
+        paths.append(str(path))
+    return paths
 
 
 def test_several_parts_have_a_table_with_mean_and_standard_deviation(
@@ -62,15 +63,19 @@ def test_several_parts_have_a_table_with_mean_and_standard_deviation(
         row[0]: row[1:] for row in csv.reader((out / "inspection.csv").read_text().splitlines())
     }
     assert rows["figure"] == ["unit", "sphere 1", "sphere 2", "mean", "standard deviation"]
-    unit, one, other, mean, deviation = rows["Spherical defect"]
+    unit, first_value, second_value, mean, deviation = rows["Spherical defect"]
     assert unit == "mm" and float(mean) == pytest.approx(
-        0.5 * (float(one) + float(other)), abs=2e-6
+        0.5 * (float(first_value) + float(second_value)), abs=2e-6
     )
-    assert float(deviation) == pytest.approx(abs(float(one) - float(other)) / 2**0.5, abs=2e-6)
+    assert float(deviation) == pytest.approx(
+        abs(float(first_value) - float(second_value)) / 2**0.5, abs=2e-6
+    )
     data = json.loads((out / "inspection.json").read_text())
-    assert data["version"] == 1 and [len(one["circles"]) for one in data["inspections"]] == [3, 3]
+    assert data["version"] == 1 and [
+        len(inspection["circles"]) for inspection in data["inspections"]
+    ] == [3, 3]
     assert data["inspections"][0]["sphericity_mm"]["minimum_zone"] == pytest.approx(
-        float(one), abs=1e-6
+        float(first_value), abs=1e-6
     )
     page = (out / "inspection.html").read_text()
     xml.dom.minidom.parseString(

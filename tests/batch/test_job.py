@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Job files: read whole, and refused with the place and the remedy."""
+"""Job files are read completely, or rejected with the position and the remedy."""
 
 import dataclasses
 import math
@@ -19,8 +19,8 @@ from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.parameters.program import ProgramParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters, SurfaceParameters
 
-# every key of the public interface with the value it has when it is left out
-WHOLE = """\
+# every key of the public interface with its default
+ALL_KEYS = """\
 version: 1
 name: hemisphere
 part:
@@ -87,23 +87,21 @@ def read(tmp_path):
     return read_text
 
 
-def refused(read, text):
+def refused(function, text):
     with pytest.raises(InputError) as caught:
-        read(text)
+        function(text)
     return caught.value
 
 
 def test_the_documented_job_is_all_defaults(read):
-    job = read(WHOLE)
+    job = read(ALL_KEYS)
     assert job.name == "hemisphere"
     assert job.part.faces == ("Face1", "Face2")
     assert job.strategy == RevolutionParameters()
     assert job.build_direction == BuildDirectionParameters()
     assert job.cell == dataclasses.replace(CellParameters(), mount="feature")
     assert job.joints == JointParameters()
-    assert job.process == ProcessParameters(
-        wire=WireParameters(feed=10.0)
-    )  # auto where it is left out
+    assert job.process == ProcessParameters(wire=WireParameters(feed=10.0))  # auto is the default
     assert job.program == ProgramParameters()
 
 
@@ -134,13 +132,14 @@ def test_what_is_left_out(read):
     ],
 )
 def test_where_it_deposits_is_proposed_where_it_is_left_out(read, cell, wanted):
-    """And the branch with it; as in the papers within their limits. Who plans tells that a machine is not known."""
+    """Position and configuration get defaults, as in the papers, within their limits. Planning
+    reports an unknown machine."""
     assert read(f"part: {{file: part.step}}\ncell: {cell}\n").cell == wanted
 
 
 def test_values_reach_the_parameters(read):
     job = read(
-        WHOLE.replace("platform: 5 mm", "platform: [1, 2 cm, 3, 0, 90 deg, 1 rad]")
+        ALL_KEYS.replace("platform: 5 mm", "platform: [1, 2 cm, 3, 0, 90 deg, 1 rad]")
         .replace("[front, up, flip]", "auto")
         .replace("rz: auto", "rz: 45")
         .replace("start_at: null", "start_at: {layer: 12}")
@@ -159,8 +158,8 @@ def test_values_reach_the_parameters(read):
 
 def test_paths_are_relative_to_the_job(read, tmp_path, monkeypatch):
     monkeypatch.chdir("/")
-    assert read(WHOLE).part.file == str(tmp_path / "part.step")
-    job = read(WHOLE.replace("machine: fanuc-arcmate120ic", "machine: my/robot.json"))
+    assert read(ALL_KEYS).part.file == str(tmp_path / "part.step")
+    job = read(ALL_KEYS.replace("machine: fanuc-arcmate120ic", "machine: my/robot.json"))
     assert job.cell.machine == str(tmp_path / "my" / "robot.json")
     for written, links in (
         ("arm.urdf", ""),
@@ -170,7 +169,7 @@ def test_paths_are_relative_to_the_job(read, tmp_path, monkeypatch):
         ("{file: my/arm.urdf, base: base_link, tip: tool0}", " base=base_link tip=tool0"),
         ("arm.urdf base=base_link tip=tool0", " base=base_link tip=tool0"),
     ):
-        job = read(WHOLE.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
+        job = read(ALL_KEYS.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
         file = re.search(r"[\w/]+\.(urdf|URDF)", written)[0]
         assert job.cell.machine == f"{tmp_path / file}{links}"
 
@@ -181,7 +180,7 @@ def test_a_calibration_is_beside_the_job(read, tmp_path):
         ("ur-ur10e calibration=my/robot.yaml", "ur-ur10e"),
         ("{name: my/arm.json, calibration: my/robot.yaml}", f"{tmp_path}/my/arm.json"),
     ):
-        job = read(WHOLE.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
+        job = read(ALL_KEYS.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
         assert job.cell.machine == f"{named} calibration={tmp_path}/my/robot.yaml"
 
 
@@ -206,21 +205,23 @@ def test_a_calibration_is_beside_the_job(read, tmp_path):
     ],
 )
 def test_a_urdf_is_named_with_file_and_links_alone(read, written, where, words):
-    with pytest.raises(InputError) as found:
-        read(WHOLE.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
-    assert where in found.value.where and words in found.value.message
+    with pytest.raises(InputError) as error_info:
+        read(ALL_KEYS.replace("machine: fanuc-arcmate120ic", f"machine: {written}"))
+    assert where in error_info.value.where and words in error_info.value.message
 
 
 def test_a_cell_is_a_file_of_its_own(read, tmp_path):
-    whole = read(WHOLE.replace("machine: fanuc-arcmate120ic", "machine: hall/my/robot.json")).cell
-    section = WHOLE[WHOLE.index("cell:") :]
+    full_cell = read(
+        ALL_KEYS.replace("machine: fanuc-arcmate120ic", "machine: hall/my/robot.json")
+    ).cell
+    section = ALL_KEYS[ALL_KEYS.index("cell:") :]
     section = section[: section.index("joints:")]
     (tmp_path / "hall").mkdir()
     lines = textwrap.dedent(section.split("\n", 1)[1]).replace(
         "machine: fanuc-arcmate120ic", "machine: my/robot.json"
     )
     (tmp_path / "hall" / "cell 3.yaml").write_text(lines, encoding="utf-8")
-    assert read(WHOLE.replace(section, "cell: hall/cell 3.yaml\n")).cell == whole
+    assert read(ALL_KEYS.replace(section, "cell: hall/cell 3.yaml\n")).cell == full_cell
 
 
 @pytest.mark.parametrize(
@@ -247,7 +248,7 @@ def test_a_broken_cell_file_is_told_by_its_own_place(read, tmp_path, text, code,
 
 LINE = {
     key: number
-    for number, line in enumerate(WHOLE.splitlines(), 1)
+    for number, line in enumerate(ALL_KEYS.splitlines(), 1)
     for key in [line.split(":")[0].strip()]
 }
 
@@ -392,8 +393,8 @@ LINE = {
     ],
 )
 def test_refusals_name_file_key_line_and_remedy(read, old, new, code, where, says):
-    assert old in WHOLE
-    error = refused(read, WHOLE.replace(old, new, 1))
+    assert old in ALL_KEYS
+    error = refused(read, ALL_KEYS.replace(old, new, 1))
     assert error.code == code
     assert error.where == f"job.yaml: {where}"
     assert says in error.message
@@ -568,7 +569,7 @@ def test_a_wall_on_itself_is_refused_at_the_substrate(read, part, substrate, sam
     ],
 )
 def test_the_default_spacing_is_at_most_the_bead_width(read, strategy, process, spacing):
-    """A job that gives only the width of its beads leaves no stripes between them."""
+    """A job that gives only the bead width leaves no gaps between beads."""
     job = read(
         f"version: 1\nname: part\npart: {{file: part.step}}\n"
         f"strategy: {strategy}\nprocess: {process}\n"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Material files: what they fill in, what the job says itself, and what is wrong in them; layers left to the model."""
+"""Material files: their defaults, overrides of the job, errors in them, and layers from the
+model."""
 
 import json
 import math
@@ -37,9 +38,9 @@ def folder(tmp_path):
     return tmp_path
 
 
-def read(folder, process, mine=MINE, rest=JOB):
-    (folder / "sub" / "er70s-6.yaml").write_text(mine, encoding="utf-8")
-    (folder / "job.yaml").write_text(rest + process, encoding="utf-8")
+def read(folder, process, material=MINE, job_text=JOB):
+    (folder / "sub" / "er70s-6.yaml").write_text(material, encoding="utf-8")
+    (folder / "job.yaml").write_text(job_text + process, encoding="utf-8")
     return jobs.read_job(str(folder / "job.yaml"))
 
 
@@ -61,8 +62,10 @@ def test_a_material_fills_in_what_the_job_leaves_out(folder):
     assert process.bead_model == str(
         folder / "sub" / "own.csv"
     )  # its path starts at the material file
-    found = {name: process.for_class(name).schedule for name in ("first_layer", "contour", "fill")}
-    assert found == {"first_layer": 2, "contour": 3, "fill": 4}
+    schedules = {
+        name: process.for_class(name).schedule for name in ("first_layer", "contour", "fill")
+    }
+    assert schedules == {"first_layer": 2, "contour": 3, "fill": 4}
 
 
 def test_what_the_job_says_itself_wins(folder):
@@ -152,10 +155,10 @@ def test_a_material_may_be_told_in_the_job(folder):
     ],
 )
 def test_what_is_wrong_with_a_material_file_is_told_in_its_words(folder, change, code, where, told):
-    mine = MINE.replace(*change)
-    assert mine != MINE
+    material_text = MINE.replace(*change)
+    assert material_text != MINE
     with pytest.raises(InputError) as caught:
-        read(folder, "process: {material: sub/er70s-6.yaml}\n", mine)
+        read(folder, "process: {material: sub/er70s-6.yaml}\n", material_text)
     assert caught.value.code == code
     assert where in caught.value.where and told in caught.value.message
 
@@ -172,11 +175,11 @@ def test_features_share_the_material(folder):
         "process: {material: stainless}\nfeatures:\n  - {name: a}\n"
         "  - {name: b, process: {travel_speed: 7}}\n",
     )
-    assert [one.process.density for one in job.features] == [
+    assert [feature.process.density for feature in job.features] == [
         7.9,
         7.9,
     ] and job.process.density == 7.9
-    assert [one.process.bead_model for one in job.features] == ["csw", "csw"]
+    assert [feature.process.bead_model for feature in job.features] == ["csw", "csw"]
 
 
 M, P, T = 85.550, 52.742, -1.7542  # Dai 2020, table 1 refitted (errata): width
@@ -185,14 +188,14 @@ AUTO = HIGH.replace("HIGH", "auto")
 
 
 def test_layers_and_spacing_that_the_model_makes(folder):
-    """The height of a straight bead of the width, by the mean of the table's three radii taken out of the fit, and as much
-    room between beads as their wire fills."""
-    job = read(folder, "process: {bead_model: csw, bead_width: 9.5 mm}\n", rest=AUTO)
+    """The layer height is that of a straight bead of this width, by the mean of the table's three
+    radii without the fit, and the spacing is the width that the wire fills."""
+    job = read(folder, "process: {bead_model: csw, bead_width: 9.5 mm}\n", job_text=AUTO)
     speed = (M / (9.5 - T)) ** 3  # mm/min
     wire = math.pi / 4.0 * 1.2**2 * 6500.0 / speed
     assert (
         2.2 < job.strategy.layer_height < 3.1
-    )  # of the beads of 9.22 to 9.86 mm of the table 2.5 to 2.7
+    )  # the table's beads of 9.22 to 9.86 mm have 2.5 to 2.7
     assert job.strategy.bead_spacing * job.strategy.layer_height == pytest.approx(wire, rel=2e-4)
 
 
@@ -217,7 +220,7 @@ def test_layers_and_spacing_that_the_model_makes(folder):
 )
 def test_what_the_model_cannot_say(folder, process, rest, where, told):
     with pytest.raises(InputError) as caught:
-        read(folder, process, rest=rest)
+        read(folder, process, job_text=rest)
     assert (
         caught.value.code == "BAD_VALUE"
         and where in caught.value.where
@@ -230,16 +233,17 @@ def test_a_slowest_speed_above_the_fastest(workshop):
     (workshop.folder / "tube.yaml").write_text(
         "part: {file: tube.step, faces: [Face1]}\nprocess: {material: {slowest: 9 mm/s, fastest: 5 mm/s}}\n"
     )
-    done = workshop.run("plan", "tube.yaml", "-o", "out", "--no-page")
+    command = workshop.run("plan", "tube.yaml", "-o", "out", "--no-page")
     assert (
-        done.status == 2
-        and "error[BAD_VALUE]" in done.err
-        and "9 mm/s is above the fastest speed, 5 mm/s" in done.err
+        command.status == 2
+        and "error[BAD_VALUE]" in command.err
+        and "9 mm/s is above the fastest speed, 5 mm/s" in command.err
     )
 
 
 def test_a_job_with_a_material_from_file_to_report(workshop):
-    """A tube whose rings are laid at the speeds of the model, faster than its material is: told at the worst of them."""
+    """The rings of a tube have the speeds of the model, above the material's maximum: the worst is
+    reported."""
     Part.makeCylinder(60.0, 9.0).exportStep(str(workshop.folder / "tube.step"))
     (workshop.folder / "slow.yaml").write_text(
         "source: own\ndensity: 7.9\nbeads: csw\nspeed_range: [5 mm/s, 6 mm/s]\n"
@@ -248,24 +252,25 @@ def test_a_job_with_a_material_from_file_to_report(workshop):
         "part: {file: tube.step, faces: [Face1]}\nstrategy: {layer_height: auto, chord_error: 0.1 mm}\n"
         "process: {material: NAME, bead_width: 9.5 mm}\n"
     )
-    told = {}
+    issues = {}
     for name in ("stainless", "slow.yaml"):
         (workshop.folder / "tube.yaml").write_text(job.replace("NAME", name))
-        done = workshop.run("plan", "tube.yaml", "-o", "out")
-        assert done.status == 0, done.err
-        told[name] = json.loads(
+        command = workshop.run("plan", "tube.yaml", "-o", "out")
+        assert command.status == 0, command.err
+        issues[name] = json.loads(
             (workshop.folder / "out" / "report.json").read_text(encoding="utf-8")
         )
         page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
         assert "<td>material</td>" in page
-    good, slow = told["stainless"], told["slow.yaml"]
+    good, slow = issues["stainless"], issues["slow.yaml"]
     assert (
         good["process"]["material"]["name"] == "Stainless steel"
         and "Dai" in good["process"]["material"]["source"]
     )
     assert good["process"]["wire"]["feed_mm_s"] == pytest.approx(6500.0 / 60.0)
     assert "MATERIAL_SPEED" not in {issue["code"] for issue in good["issues"]}
-    # where rings bend the height of the straight bead is nearly kept: drift of a few hundredths over layers
+    # with rings this curved, the height stays near that of the straight bead: a drift of a few
+    # hundredths over the layers
     assert abs(good["beads"]["layers"][-1]["drift_mm"]) < 0.1 * good["counts"]["layers"]
     (issue,) = [issue for issue in slow["issues"] if issue["code"] == "MATERIAL_SPEED"]
     assert issue["level"] == "warning" and "slow at 5 to 6 mm/s" in issue["message"]

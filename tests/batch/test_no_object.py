@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A document in which no single object is meant: the message says which case it is."""
+"""If a document does not identify a single object, the message states the case."""
 
 import FreeCAD as App
 import pytest
@@ -37,7 +37,7 @@ strategy: {{kind: solid, layer_height: 5 mm}}
 def test_no_single_object(workshop, boxes, more, message):
     document = App.newDocument("Model")
     preference = App.ParamGet("User parameter:BaseApp/Preferences/Document")
-    before = preference.GetBool("DuplicateLabels")
+    original_setting = preference.GetBool("DuplicateLabels")
     preference.SetBool("DuplicateLabels", True)
     try:
         for label in boxes:
@@ -45,9 +45,9 @@ def test_no_single_object(workshop, boxes, more, message):
         document.recompute()
         document.saveAs(str(workshop.folder / "model.FCStd"))
     finally:
-        preference.SetBool("DuplicateLabels", before)
+        preference.SetBool("DuplicateLabels", original_setting)
         App.closeDocument(document.Name)
     (workshop.folder / "part.yaml").write_text(JOB.format(more=more), encoding="utf-8")
-    done = workshop.run("plan", "part.yaml")
-    assert done.status == 2 and "error[NO_OBJECT]" in done.err
-    assert message in done.err
+    command = workshop.run("plan", "part.yaml")
+    assert command.status == 2 and "error[NO_OBJECT]" in command.err
+    assert message in command.err

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`cell.obstacles` in a job file: a table and a post that a plan without them drives links into, read from files; judged on
-the rows that are written, by PyKDL's frames of the links. What of them is refused, and how it is told."""
+"""`cell.obstacles` in a job file: a table and a post, from files, which links would hit in a plan
+without them. PyKDL's frames of the links check the written rows. Invalid obstacles are rejected
+with a message."""
 
 import csv
 import json
@@ -21,19 +22,20 @@ POST, TABLE = (60.0, 60.0, 400.0), (1000.0, 800.0, 30.0)
 POST_AT, TABLE_AT = (
     (1080.0, 138.564, 95.0),
     (1000.0, 0.0, -116.0),
-)  # their middles, mm in the robot's base
+)  # their centres, mm in the robot's base
 
 
 @pytest.fixture
 def job(workshop, root):
-    """What plans a dome beside a post that is a file; changed by what is given. Its end, and its folder of outputs."""
+    """Return a function that plans a dome next to a post from a file, with changes, and returns its
+    end and its output folder."""
     shutil.copy(root / "resources" / "examples" / "hemisphere.step", workshop.folder)
     solid = Part.makeBox(*POST)
     solid.exportStep(str(workshop.folder / "a post.step"))
 
     def plan(**cell):
         corner = [middle - 0.5 * edge for middle, edge in zip(POST_AT, POST)]
-        told = {
+        values = {
             "machine": ROBOT,
             "limits": "paper",
             "setup": "tool-on-robot",
@@ -49,7 +51,7 @@ def job(workshop, root):
             "part": {"file": "hemisphere.step"},
             "strategy": {"kind": "revolution", "layer_height": "15 mm", "chord_error": "0.2 mm"},
             "build_direction": {"mode": "fixed"},
-            "cell": told,
+            "cell": values,
             "program": {"post": "fanuc"},
         }
         (workshop.folder / "dome.yaml").write_text(yaml.safe_dump(text), encoding="utf-8")
@@ -59,7 +61,8 @@ def job(workshop, root):
 
 
 def nearest(folder, middle, size):
-    """mm between links and a box along the rows that were written, ten places to each."""
+    """Return the distance in mm between links and a box along the written rows, at ten positions of
+    each."""
     with open(folder / "waypoints.csv", encoding="utf-8", newline="") as file:
         rows = np.radians(
             [[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in csv.DictReader(file)]
@@ -74,32 +77,34 @@ def nearest(folder, middle, size):
     dense = np.concatenate(
         [rows[:-1] + share * np.diff(rows, axis=0) for share in np.linspace(0.1, 1.0, 10)]
     )[::17]
-    place = robot.base[:3, :3] @ np.array(middle) + robot.base[:3, 3]
+    centre = robot.base[:3, :3] @ np.array(middle) + robot.base[:3, 3]
     for q in dense:
         for number, points in links:
             pose = arm.frame(q, number)
-            seen = points @ pose[:3, :3].T + pose[:3, 3] - place
+            relative_points = points @ pose[:3, :3].T + pose[:3, 3] - centre
             best = min(
                 best,
-                np.linalg.norm(np.maximum(np.abs(seen) - 0.5 * np.array(size), 0.0), axis=1).min(),
+                np.linalg.norm(
+                    np.maximum(np.abs(relative_points) - 0.5 * np.array(size), 0.0), axis=1
+                ).min(),
             )
     return best
 
 
 def notes(folder):
-    told = json.loads((folder / "report.json").read_text(encoding="utf-8"))
-    return {issue["code"]: issue["message"] for issue in told["issues"]}
+    report_data = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    return {issue["code"]: issue["message"] for issue in report_data["issues"]}
 
 
 def test_links_of_a_written_path_keep_clear_of_a_post_that_is_a_file(job):
-    done, folder = job()
-    assert done.status == 3 and not (folder / "program").exists(), done.err
+    command, folder = job()
+    assert command.status == 3 and not (folder / "program").exists(), command.err
     assert nearest(folder, POST_AT, POST) == 0.0
     assert "inside post" in notes(folder)["ARM_COLLISION"]
     assert notes(folder)["REMEDY"].startswith("the job is feasible with `cell.arm_clearance: 5 mm`")
     assert notes(folder)["OBSTACLES_NOT_KEPT"].startswith("post: ")
-    done, folder = job(arm_clearance="10 mm")
-    assert done.status == 0, done.err
+    command, folder = job(arm_clearance="10 mm")
+    assert command.status == 0, command.err
     assert nearest(folder, POST_AT, POST) >= CLEARANCE
     assert "OBSTACLES_NOT_KEPT" not in notes(folder)
 
@@ -116,6 +121,6 @@ def test_links_of_a_written_path_keep_clear_of_a_post_that_is_a_file(job):
     ("post.step", "error[BAD_VALUE] dome.yaml: cell.obstacles[0]"),
 ])  # fmt: skip
 def test_what_says_nothing_is_refused(job, obstacle, told):
-    done, folder = job(obstacles=[obstacle])
-    assert done.status == 2 and told in done.err, done.err
+    command, folder = job(obstacles=[obstacle])
+    assert command.status == 2 and told in command.err, command.err
     assert not (folder / "program").exists()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jobs on arms without a spherical wrist: planned from end to end, and where PyKDL says the nozzle is."""
+"""Jobs on arms without a spherical wrist, planned completely; PyKDL checks the nozzle position."""
 
 import json
 
@@ -46,9 +46,9 @@ def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branc
     workshop.write_job(
         JOB.format(machine=name, cell=cell, post="fanuc" if name.startswith("fanuc") else "ur")
     )
-    done = workshop.run("plan", "cup.yaml", "--no-page")
-    assert done.status == 0, done.err
-    assert ("note[FOLLOWED]" in done.err) == (name == "fanuc-crx10ia")
+    command = workshop.run("plan", "cup.yaml", "--no-page")
+    assert command.status == 0, command.err
+    assert ("note[FOLLOWED]" in command.err) == (name == "fanuc-crx10ia")
     files = workshop.files()
     rows, points = deposit(files["waypoints.csv"].decode())
     report = json.loads(files["report.json"])
@@ -61,10 +61,10 @@ def test_a_cup_is_planned_within_limits_and_without_a_jump(workshop, name, branc
     assert (q >= limits.lower).all() and (q <= limits.upper).all()
     platform = KdlArm(arm).forward(q) @ frames.pose(np.eye(3), (0.0, 0.0, 5.0))
     station = arm.base @ frames.pose(np.eye(3), point)
-    seen = frames.inverse(platform) @ station
+    nozzle_poses = frames.inverse(platform) @ station
     # the hemisphere's rim is its first layer, on the platform
-    np.testing.assert_allclose(seen[:, :3, 3], points, atol=1e-4)
-    # written where what is read back is as planned alone
+    np.testing.assert_allclose(nozzle_poses[:, :3, 3], points, atol=1e-4)
+    # a program is written only if its read-back equals the plan
     assert ("program/CUP.LS" if name.startswith("fanuc") else "program/cup.script") in files
     layers = np.array([int(row["layer"]) for row in rows])
     for layer in range(layers.max() + 1):
@@ -78,22 +78,24 @@ def test_programs_that_nobody_can_check_are_refused(workshop):
     without["controller"]["posts"] = []
     (workshop.job.parent / "mine.json").write_text(json.dumps(without))
     workshop.write_job(JOB.format(machine="mine.json", cell=cell, post="fanuc"))
-    done = workshop.run("plan", "cup.yaml", "--no-page")
+    command = workshop.run("plan", "cup.yaml", "--no-page")
     assert (
-        done.status == 2
-        and "error[WRONG_CONTROLLER]" in done.err
-        and "no post supports the controller yet" in done.err
+        command.status == 2
+        and "error[WRONG_CONTROLLER]" in command.err
+        and "no post supports the controller yet" in command.err
     )
     workshop.write_job(JOB.format(machine="motoman-ma2010", cell=cell, post="yaskawa"))
-    done = workshop.run("plan", "cup.yaml")
+    command = workshop.run("plan", "cup.yaml")
     assert (
-        done.status == 2
-        and "error[NO_PULSES]" in done.err
-        and "controller.pulses_per_degree" in done.err
+        command.status == 2
+        and "error[NO_PULSES]" in command.err
+        and "controller.pulses_per_degree" in command.err
     )
     cell = "deposition_point: [710, 0, 839, 0, 0, 0], branch: [front, up, noflip]"
     workshop.write_job(
         JOB.format(machine="fanuc-crx10ia", cell=cell, post="fanuc, motion: cartesian")
     )
-    done = workshop.run("plan", "cup.yaml", "--no-page")
-    assert done.status == 2 and "error[NOT_FOR_WRIST]" in done.err and "use joint" in done.err
+    command = workshop.run("plan", "cup.yaml", "--no-page")
+    assert (
+        command.status == 2 and "error[NOT_FOR_WRIST]" in command.err and "use joint" in command.err
+    )

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What an infeasible job is told would make it feasible does so, when it is put into the job as it was told."""
+"""A remedy that the message of an infeasible job proposes makes the job feasible when it is entered
+as printed."""
 
 import json
 import math
@@ -10,7 +11,7 @@ import pytest
 PART = "part: {file: cup.step}\nstrategy: {layer_height: 10 mm, chord_error: 0.2 mm}\n"
 OF_ANOTHER = "[1045.747, -630.155, 653.167, 0, 0, 0]"
 JOBS = {
-    # the deposition point is that of another machine
+    # the deposition point belongs to another machine
     "machine": {"cell": {"machine": "kuka-kr16-2", "deposition_point": OF_ANOTHER}},
     "speed": {"cell": {"limits": "paper"}, "process": {"travel_speed": "300 mm/s"}},
     "range": {"cell": {}, "joints": {"rotation_range": "[-5 deg, 5 deg]"}},
@@ -21,7 +22,8 @@ JOBS = {
             "deposition_point": OF_ANOTHER,
         }
     },
-    # nothing turns the part so that its walls could be laid upright, nor does one direction for all do, on a slant
+    # no mechanism turns the part upright for its walls, and no single slanted direction works
+    # either
     "leaning": {
         "cell": {
             "machine": "kuka-kr8-r2100-2-arc-hw",
@@ -32,7 +34,7 @@ JOBS = {
         },
         "build_direction": {"max_from_vertical": "10 deg"},
     },
-    # a branch that does not reach round the positioner
+    # a configuration that does not reach around the positioner
     "branch": {
         "cell": {
             "machine": "kuka-kr8-r2100-2-arc-hw",
@@ -54,7 +56,7 @@ EXPECTED = {
 }
 
 
-def written(sections):
+def write_job_with(sections):
     lines = [PART]
     for section, keys in sections.items():
         lines.append(
@@ -68,23 +70,23 @@ def written(sections):
 def test_a_remedy_that_was_told_makes_the_job_feasible(name, workshop):
     sections = {section: dict(keys) for section, keys in JOBS[name].items()}
     sections["cell"]["platform_diameter"] = "100 mm"
-    workshop.write_job(written(sections))
-    done = workshop.run("plan", "cup.yaml", "--no-page")
-    assert done.status == 3, done.err
-    first = done.err.splitlines()[0]
-    assert first.startswith("note[REMEDY] job: the job is feasible with `") and first.endswith(
-        "; tested, not applied"
-    )
-    told = re.findall(r"`(\w+)\.(\w+): ([^`]+)`", first)
-    assert told and EXPECTED[name] in first
+    workshop.write_job(write_job_with(sections))
+    command = workshop.run("plan", "cup.yaml", "--no-page")
+    assert command.status == 3, command.err
+    first_line = command.err.splitlines()[0]
+    assert first_line.startswith(
+        "note[REMEDY] job: the job is feasible with `"
+    ) and first_line.endswith("; tested, not applied")
+    remedies_ = re.findall(r"`(\w+)\.(\w+): ([^`]+)`", first_line)
+    assert remedies_ and EXPECTED[name] in first_line
     report = json.loads(workshop.files()["report.json"])
     assert (
         report["status"] == "infeasible"
         and sum(issue["code"] == "REMEDY" for issue in report["issues"]) == 1
     )
-    for section, key, value in told:
+    for section, key, value in remedies_:
         sections.setdefault(section, {})[key] = value
-    workshop.write_job(written(sections))
+    workshop.write_job(write_job_with(sections))
     again = workshop.run("plan", "cup.yaml", "--no-page")
     assert again.status == 0 and "error[" not in again.err and "REMEDY" not in again.err, again.err
 
@@ -92,7 +94,7 @@ def test_a_remedy_that_was_told_makes_the_job_feasible(name, workshop):
 def test_what_was_tried_in_vain_is_told(workshop):
     # far out of reach, where no change of the program helps
     workshop.write_job(
-        written(
+        write_job_with(
             {
                 "cell": {
                     "limits": "paper",
@@ -102,35 +104,36 @@ def test_what_was_tried_in_vain_is_told(workshop):
             }
         )
     )
-    done = workshop.run("plan", "cup.yaml", "--no-page")
-    assert done.status == 3
-    told = "note[NO_REMEDY] job: no tested change makes the job feasible: `"
-    assert done.err.startswith((told, "note[REMEDY]"))
+    command = workshop.run("plan", "cup.yaml", "--no-page")
+    assert command.status == 3
+    note = "note[NO_REMEDY] job: no tested change makes the job feasible: `"
+    assert command.err.startswith((note, "note[REMEDY]"))
 
 
 def test_a_positioner_out_of_reach_is_called_so_and_told_where_it_could_stand(workshop):
-    told = "machine: motoman-motopos-d500, pose: {}, carries: part"
+    positioner = "machine: motoman-motopos-d500, pose: {}, carries: part"
     sections = {**JOBS["leaning"], "cell": {**JOBS["leaning"]["cell"], "branch": "auto"}}
-    sections["cell"]["external"] = "[{" + told.format("[200, 3600, -40, 0, 0, 20]") + "}]"
-    workshop.write_job(written(sections))
-    done = workshop.run("plan", "cup.yaml", "--no-page")
-    assert done.status == 3
-    found = re.search(
+    sections["cell"]["external"] = "[{" + positioner.format("[200, 3600, -40, 0, 0, 20]") + "}]"
+    workshop.write_job(write_job_with(sections))
+    command = workshop.run("plan", "cup.yaml", "--no-page")
+    assert command.status == 3
+    match = re.search(
         r"error\[UNREACHABLE\] job: the robot cannot reach the positioner: the nearest point of the part is (\d+) mm from the shoulder, but arm and tool reach only (\d+) mm",
-        done.err,
+        command.err,
     )
-    assert found, done.err
-    # the shoulder is above the base's middle at some 0.3 m, ahead of it by less; the part is 40 mm wide
-    assert abs(float(found[1]) - math.hypot(200.0, 3600.0)) < 320.0 and 2100.0 < float(
-        found[2]
-    ) < float(found[1])
-    assert "move the positioner, choose another branch" in done.err
+    assert match, command.err
+    # the shoulder is some 0.3 m above the middle of the base and less in front of it; the part is
+    # 40 mm wide
+    assert abs(float(match[1]) - math.hypot(200.0, 3600.0)) < 320.0 and 2100.0 < float(
+        match[2]
+    ) < float(match[1])
+    assert "move the positioner, choose another branch" in command.err
     (pose,) = re.findall(
-        r"the job is feasible with `cell\.external\[0\]\.pose: (\[[^`]+\])`", done.err
+        r"the job is feasible with `cell\.external\[0\]\.pose: (\[[^`]+\])`", command.err
     )
-    assert pose.endswith(", -40, 0, 0, 20]")  # on the same floor, turned as it was
-    sections["cell"]["external"] = "[{" + told.format(pose) + "}]"
-    workshop.write_job(written(sections))
+    assert pose.endswith(", -40, 0, 0, 20]")  # on the same floor, with the same orientation
+    sections["cell"]["external"] = "[{" + positioner.format(pose) + "}]"
+    workshop.write_job(write_job_with(sections))
     again = workshop.run("plan", "cup.yaml", "--no-page")
     assert again.status == 0 and "error[" not in again.err, again.err
 
@@ -142,15 +145,15 @@ cell:
 """
 
 
-def written_for(kind, more=""):
+def written_for(kind, options=""):
     return (
         f"part: {{file: skin.step}}\nprocess: {{bead_width: 3 mm}}\n"
-        f"strategy: {{kind: {kind}, layer_height: 2 mm, chord_error: 0.1 mm}}\n{CELL}{more}"
+        f"strategy: {{kind: {kind}, layer_height: 2 mm, chord_error: 0.1 mm}}\n{CELL}{options}"
     )
 
 
 def skin(folder, lean, squeezed):
-    """A skin of 8 mm that leans out by so many degrees from its edge, 20 mm about Z."""
+    """Return a skin of 8 mm that leans out by an angle in degrees from its edge, 20 mm about Z."""
     import FreeCAD
     import Part
 
@@ -163,7 +166,7 @@ def skin(folder, lean, squeezed):
 
 
 def groove(folder):
-    """In which the nozzle of CELL has room upright, and nowhere else."""
+    """Return a groove in which only the vertical nozzle of CELL fits."""
     import Part
 
     rings = [Part.makeCylinder(36, 70).cut(Part.makeCylinder(30, 70)), Part.makeCylinder(13.5, 70)]
@@ -182,35 +185,37 @@ def groove(folder):
 def test_one_direction_for_a_wall_that_leans_is_told_and_chosen(
     workshop, kind, lean, sections, code
 ):
-    """Where the tool meets something, or leans through a singularity, with directions that follow the wall."""
+    """With directions that follow the wall, the tool collides or passes a singularity."""
     skin(workshop.folder, lean, squeezed=kind == "surface")
-    more = sections(workshop.folder)
-    workshop.write_job(written_for(kind, more))
-    done = workshop.run("plan", "cup.yaml", "--no-page")
-    assert done.status == 3 and f"error[{code}]" in done.err, done.err
-    assert done.err.splitlines()[0] == (
+    section_text = sections(workshop.folder)
+    workshop.write_job(written_for(kind, section_text))
+    command = workshop.run("plan", "cup.yaml", "--no-page")
+    assert command.status == 3 and f"error[{code}]" in command.err, command.err
+    assert command.err.splitlines()[0] == (
         "note[REMEDY] job: the job is feasible with `build_direction.mode: fixed`; tested, not applied"
-    ), done.err
-    workshop.write_job(written_for(kind, more + "build_direction: {mode: fixed}\n"))
+    ), command.err
+    workshop.write_job(written_for(kind, section_text + "build_direction: {mode: fixed}\n"))
     again = workshop.run("plan", "cup.yaml", "--no-page")
     assert again.status == 0 and "error[" not in again.err and "REMEDY" not in again.err, again.err
-    asked = workshop.files()["waypoints.csv"]
-    workshop.write_job(written_for("auto", more))
-    chosen = workshop.run("plan", "cup.yaml", "--no-page")
-    assert chosen.status == 0 and workshop.files()["waypoints.csv"] == asked, chosen.err
+    waypoints = workshop.files()["waypoints.csv"]
+    workshop.write_job(written_for("auto", section_text))
+    second_command = workshop.run("plan", "cup.yaml", "--no-page")
+    assert second_command.status == 0 and workshop.files()["waypoints.csv"] == waypoints, (
+        second_command.err
+    )
     issues = json.loads(workshop.files()["report.json"])["issues"]
-    told = [issue["message"] for issue in issues if issue["code"] == "PROPOSED"]
-    assert told[0].startswith(f"kind: {kind}: ") and told[0].endswith(
+    messages = [issue["message"] for issue in issues if issue["code"] == "PROPOSED"]
+    assert messages[0].startswith(f"kind: {kind}: ") and messages[0].endswith(
         f"end with {code}, so all directions are the same (build_direction.mode: fixed)"
     )
-    workshop.write_job(written_for("auto", more + "build_direction: {mode: local}\n"))
+    workshop.write_job(written_for("auto", section_text + "build_direction: {mode: local}\n"))
     assert workshop.run("plan", "cup.yaml", "--no-page").status == 3, (
         "what the job says of directions counts"
     )
 
 
 def test_one_direction_that_does_not_clear_the_nozzle_is_told_to(workshop):
-    """Under a lid."""
+    """The wall is under a lid."""
     import FreeCAD
     import Part
 
@@ -220,9 +225,9 @@ def test_one_direction_that_does_not_clear_the_nozzle_is_told_to(workshop):
     skin(workshop.folder, 30, squeezed=False)
     for kind in ("revolution", "auto"):
         workshop.write_job(written_for(kind, "fixtures: [{file: groove.step}]\n"))
-        done = workshop.run("plan", "cup.yaml", "--no-page")
-        assert done.status == 3 and "error[CLEARANCE]" in done.err, done.err
+        command = workshop.run("plan", "cup.yaml", "--no-page")
+        assert command.status == 3 and "error[CLEARANCE]" in command.err, command.err
         assert (
             "note[NO_REMEDY] job: the nozzle is not clear with `build_direction.mode: fixed` either"
-            in done.err
-        ), done.err
+            in command.err
+        ), command.err

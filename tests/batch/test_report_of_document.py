@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The report of a document's stages is the page that the command wrote of the same job."""
+"""The report of a document's stages is the page that the command wrote for the same job."""
 
 import re
 
@@ -34,15 +34,15 @@ joints: {method: constant}
 
 
 def sections(page):
-    """Heading -> what stands under it; what was measured on the clock is left out."""
-    head, *others = page.split("<h2>")
-    found = {"": head, **dict(one.split("</h2>", 1) for one in others)}
-    assert found.pop("Time taken").count("<tr>") >= 2
-    return found
+    """Return the text under each heading, without measured times."""
+    head, *blocks = page.split("<h2>")
+    texts = {"": head, **dict(block.split("</h2>", 1) for block in blocks)}
+    assert texts.pop("Time taken").count("<tr>") >= 2
+    return texts
 
 
 def both(workshop, name, kind):
-    """The sections of the command's page, and of that of the document it saved."""
+    """Return the sections of the command's page and of the page of the saved document."""
     theirs = workshop.files(f"out/{name}")["report.html"].decode()
     folder = workshop.folder / "page"
     folder.mkdir()
@@ -58,8 +58,8 @@ def both(workshop, name, kind):
 
 
 def test_it_is_the_page_of_the_command(workshop):
-    done = workshop.run("plan", "cup.yaml")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "cup.yaml")
+    assert command.status == 0, command.err
     theirs, ours = both(workshop, "cup", "program")
     assert ours == theirs
     assert {"Preflight", "Programs", "Joints against their limits", "Time and material"} <= set(
@@ -101,8 +101,8 @@ def test_several_features_are_told_one_by_one(workshop):
     )
     Part.makeCylinder(12, 15, App.Vector(0, 0, 10)).exportStep(str(workshop.folder / "post.step"))
     workshop.write_job(TWO)
-    done = workshop.run("plan", "cup.yaml")
-    assert done.status in (0, 3), done.err
+    command = workshop.run("plan", "cup.yaml")
+    assert command.status in (0, 3), command.err
     theirs, ours = both(workshop, "two", "joint path")
     assert (
         ours == theirs and "plate" in ours["Layers and path"] and "post" in ours["Layers and path"]
@@ -110,17 +110,17 @@ def test_several_features_are_told_one_by_one(workshop):
 
 
 def test_what_does_not_fit_its_inputs_is_refused(doc, tmp_path):
-    part = doc.addObject("Part::Sphere", "Sphere")
-    part.Radius, part.Angle1, part.Angle2 = 45.0, 0, 90
+    sphere = doc.addObject("Part::Sphere", "Sphere")
+    sphere.Radius, sphere.Angle1, sphere.Angle2 = 45.0, 0, 90
     doc.recompute()
-    toolpath = api.make_toolpath(doc, api.make_feature(doc, part, layer_height=15))
+    toolpath = api.make_toolpath(doc, api.make_feature(doc, sphere, layer_height=15))
     with pytest.raises(InputError, match="use the extension"):
         api.export_report(toolpath, str(tmp_path / "page.txt"))
     with pytest.raises(InputError, match=re.escape(f"the folder {tmp_path}/none does not exist")):
         api.export_report(toolpath, str(tmp_path / "none" / "page.html"))
     with pytest.raises(InputError, match="the object has no path"):
         api.export_report(toolpath.Feature, str(tmp_path / "page.html"))
-    part.Radius = 40.0
+    sphere.Radius = 40.0
     with pytest.raises(InputError, match="recompute the object first"):
         api.export_report(toolpath, str(tmp_path / "page.html"))
     assert not any(tmp_path.iterdir())

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`substrate.scan` in a job file: a block on a bent plate and a bend on an oval pipe, judged on the rows that are written by
-the equations of what was scanned; and what is refused."""
+"""`substrate.scan` in a job file: the equations of the scanned surfaces check the written rows of a
+block on a curved plate and a bend on an oval pipe; invalid scans are rejected."""
 
 import csv
 import json
@@ -35,10 +35,11 @@ def parts(tmp_path_factory):
 
 @pytest.fixture
 def job(workshop, parts):
-    """What plans the block on the plate with these keys of its substrate; its end, and its folder of outputs."""
+    """Return a function that plans the block on the plate with keys of its substrate, and returns
+    its end and its output folder."""
 
     def plan(more=None, **substrate):
-        told = {
+        values = {
             "version": 1,
             "name": "block",
             "part": {"file": str(parts / "block.step")},
@@ -50,7 +51,7 @@ def job(workshop, parts):
             },
             **(more or {}),
         }
-        (workshop.folder / "block.yaml").write_text(yaml.safe_dump(told), encoding="utf-8")
+        (workshop.folder / "block.yaml").write_text(yaml.safe_dump(values), encoding="utf-8")
         return workshop.run(
             "plan", "block.yaml", "-o", "out", *(() if more else ("--no-page",))
         ), workshop.folder / "out"
@@ -69,17 +70,17 @@ def deposit(folder, layer):
 
 
 def test_a_block_stands_on_the_plate_as_it_was_scanned(job, parts):
-    """With 1 % of the points far off the plate."""
+    """One percent of the points are far off the plate."""
     points = np.loadtxt(parts / "scan.csv", delimiter=",", skiprows=1)
     astray = np.abs(points[:, 2] - bent(points[:, 0], points[:, 1])) > 1.0
     assert 0.009 < astray.mean() <= 0.01
-    ended, folder = job(
+    command, folder = job(
         {
             "cell": {"machine": "fanuc-arcmate120ic", "platform": "20 mm"},
             "program": {"post": "fanuc"},
         }
     )
-    assert (ended.status, ended.err.count("error")) == (0, 0)
+    assert (command.status, command.err.count("error")) == (0, 0)
     x, y, z = deposit(folder, 0).T
     assert np.abs(z - bent(x, y)).max() < 0.06 and np.ptp(bent(x, y)) > 1.0
     report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
@@ -95,7 +96,7 @@ def test_a_block_stands_on_the_plate_as_it_was_scanned(job, parts):
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert (
         page.count("Layer 0 as planned") == 2 and page.count("Layer 0 as deposited") == 2
-    )  # a picture each, and its name
+    )  # a picture for each, and its name
 
 
 @pytest.mark.long
@@ -108,12 +109,12 @@ def test_a_wall_leaves_a_pipe_where_it_was_scanned(workshop, root):
 
     rng = np.random.default_rng(5)
     azimuth, along = rng.uniform(-np.pi, np.pi, 8000), rng.uniform(-60.0, 60.0, 8000)
-    far = radius(azimuth, along) + rng.normal(0.0, 0.02, 8000)
-    points = np.column_stack([far * np.sin(azimuth), along, far * np.cos(azimuth) + sag(along)])
+    radii = radius(azimuth, along) + rng.normal(0.0, 0.02, 8000)
+    points = np.column_stack([radii * np.sin(azimuth), along, radii * np.cos(azimuth) + sag(along)])
     points[:80] += rng.uniform(-20.0, 40.0, (80, 3))
     np.savetxt(workshop.folder / "pipe.xyz", points)
     examples = root / "resources" / "examples"
-    told = {
+    values = {
         "version": 1,
         "name": "bend",
         "part": {"file": str(examples / "tube-on-pipe.step")},
@@ -125,9 +126,9 @@ def test_a_wall_leaves_a_pipe_where_it_was_scanned(workshop, root):
             "chord_error": "0.1 mm",
         },
     }
-    (workshop.folder / "bend.yaml").write_text(yaml.safe_dump(told), encoding="utf-8")
-    ended = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
-    assert (ended.status, "SCAN_FITTED" in ended.err) == (0, True)
+    (workshop.folder / "bend.yaml").write_text(yaml.safe_dump(values), encoding="utf-8")
+    command = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
+    assert (command.status, "SCAN_FITTED" in command.err) == (0, True)
     x, y, z = deposit(workshop.folder / "out", 0).T
     high = z - sag(y)
     assert np.abs(np.hypot(x, high) - radius(np.arctan2(x, high), y)).max() < 0.06
@@ -137,7 +138,7 @@ def test_a_wall_leaves_a_pipe_where_it_was_scanned(workshop, root):
 def test_a_job_after_a_layer_begins_above_it(job, workshop):
     points = points_on(lambda x, y: 8.0 - 0.5 + 0.003 * x, (40.0, 15.0), 6000)
     np.savetxt(workshop.folder / "grown.xyz", points)
-    ended, folder = job(
+    command, folder = job(
         {
             "cell": {"machine": "fanuc-arcmate120ic", "platform": "20 mm"},
             "program": {"post": "fanuc"},
@@ -145,7 +146,7 @@ def test_a_job_after_a_layer_begins_above_it(job, workshop):
         scan="grown.xyz",
         after_layer=1,
     )
-    assert ended.status == 0
+    assert command.status == 0
     x, _, z = deposit(folder, 2).T
     assert np.abs(z - (7.5 + 0.003 * x)).max() < 0.06
     text = "".join(path.read_text(encoding="ascii") for path in (folder / "program").iterdir())
@@ -173,5 +174,5 @@ def test_scans_of_something_else_are_refused(job, parts, workshop, code, substra
         90.0 * ball / np.linalg.norm(ball, axis=1, keepdims=True),
         delimiter=",",
     )
-    ended, folder = job(**substrate)
-    assert ended.status == 2 and f"error[{code}]" in ended.err and not folder.exists()
+    command, folder = job(**substrate)
+    assert command.status == 2 and f"error[{code}]" in command.err and not folder.exists()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What spacing costs, in report.json and on the page: a bent tube on a block, planned, and walls of several faces."""
+"""The cost of spacing in report.json and on the page: a planned bent tube on a block, and walls of
+several faces."""
 
 import json
 import re
@@ -26,12 +27,13 @@ cell: {limits: paper, platform: [0, 0, 30, 0, 0, 0]}
 joints: {method: constant}
 """
 METHODS = ("smooth", "iso-parameter", "centreline-normal", "constant-distance")
-SEVERAL_FACES = SimpleNamespace(closes_around=False)  # what is asked of such a wall
+SEVERAL_FACES = SimpleNamespace(closes_around=False)  # the attributes that the comparison reads
 
 
 @pytest.fixture
 def elbow(workshop):
-    """A bend (R = 30, r = 8) that grows out of the flat top of a block and leans over by 40 degrees."""
+    """Return a job of a bend (R = 30, r = 8) that grows from the flat top of a block and leans by
+    40 degrees."""
     shell = Part.makeTorus(
         30.0, 8.0, FreeCAD.Vector(-5, 0, 0), FreeCAD.Vector(0, -1, 0), -180, 180, 50
     )
@@ -46,8 +48,8 @@ def elbow(workshop):
 
 
 def test_a_job_tells_what_its_spacing_costs_and_gains(elbow):
-    done = elbow.run("plan", "elbow.yaml")
-    assert done.status in (0, 3), done.err
+    command = elbow.run("plan", "elbow.yaml")
+    assert command.status in (0, 3), command.err
     files = elbow.files("out/elbow")
     report = json.loads(files["report.json"])
     rows = {row["method"]: row for row in report["spacing_comparison"]}
@@ -80,7 +82,7 @@ def test_a_job_tells_what_its_spacing_costs_and_gains(elbow):
     ]
     plots = {picture.get("aria-label"): picture for picture in pictures}
     facts = json.loads(re.search(r'id="path-facts">(.*?)</script>', page, re.DOTALL)[1])
-    assert facts["bodies"]  # the block is there
+    assert facts["bodies"]  # the view contains the block
     for title in (
         "Iso-parameter",
         "Constant distance",
@@ -105,21 +107,27 @@ def test_walls_of_several_faces_say_what_does_not_apply():
     layers = tuple(Layer((Bead(ring, up, up, circle, np.ones(73), True),)) for ring in points)
     toolpath = Toolpath(layers, np.eye(4), 2.0, 0.1, family="surface")
     strategy = SurfaceParameters(layer_height=2.0)
-    found = spacing_comparison.compare(SEVERAL_FACES, strategy)
-    first, *others = spacing_comparison.rows(found, strategy, toolpath, [np.full(73, 2.0)] * 2)
-    assert (first["method"], first["planned"], first["layers"]) == ("constant-distance", True, 3)
-    assert [first["min_mm"], first["max_mm"], first["reason"]] == [2.0, 2.0, None]
-    assert first["cornered_layers"] is None  # nobody told the tangents
-    assert {row["method"] for row in others} == set(METHODS) - {"constant-distance"}
-    assert all(row["reason"] and row["layers"] is None and not row["planned"] for row in others)
+    comparison = spacing_comparison.compare(SEVERAL_FACES, strategy)
+    first_row, *methods = spacing_comparison.rows(
+        comparison, strategy, toolpath, [np.full(73, 2.0)] * 2
+    )
+    assert (first_row["method"], first_row["planned"], first_row["layers"]) == (
+        "constant-distance",
+        True,
+        3,
+    )
+    assert [first_row["min_mm"], first_row["max_mm"], first_row["reason"]] == [2.0, 2.0, None]
+    assert first_row["cornered_layers"] is None  # the tangents are unknown
+    assert {row["method"] for row in methods} == set(METHODS) - {"constant-distance"}
+    assert all(row["reason"] and row["layers"] is None and not row["planned"] for row in methods)
 
-    others = spacing_comparison.compare(
+    methods = spacing_comparison.compare(
         SEVERAL_FACES, SurfaceParameters(layer_height=2.0, method="fronts")
     )
-    told = {one.method: one.reason for one in others}
+    reasons = {method_result.method: method_result.reason for method_result in methods}
     assert (
-        "strategy.method" in told["iso-parameter"]
-        and "strategy.method" in told["centreline-normal"]
+        "strategy.method" in reasons["iso-parameter"]
+        and "strategy.method" in reasons["centreline-normal"]
     )
 
 
@@ -129,8 +137,8 @@ def test_corners_of_walls_of_several_faces_are_those_of_their_beads():
         [[-5.0, 0.0, 0.0], [0.0, 0.0, 0.0], [5.0 * np.cos(bent), 5.0 * np.sin(bent), 0.0]]
     )
     up, path = np.tile([0.0, 0.0, 1.0], (3, 1)), np.arange(3.0)
-    before, after = np.array([1.0, 0.0, 0.0]), np.array([np.cos(bent), np.sin(bent), 0.0])
-    tangents = np.array([[before, before], [before, after], [after, after]])
+    incoming, outgoing = np.array([1.0, 0.0, 0.0]), np.array([np.cos(bent), np.sin(bent), 0.0])
+    tangents = np.array([[incoming, incoming], [incoming, outgoing], [outgoing, outgoing]])
     layers = tuple(
         Layer(
             (
@@ -143,16 +151,16 @@ def test_corners_of_walls_of_several_faces_are_those_of_their_beads():
     )
     toolpath = Toolpath(layers, np.eye(4), 2.0, 0.1, family="surface")
     strategy = SurfaceParameters(layer_height=2.0)
-    found = spacing_comparison.compare(SEVERAL_FACES, strategy)
-    first = spacing_comparison.rows(found, strategy, toolpath, [np.full(3, 2.0)] * 2)[0]
-    assert first["cornered_layers"] == 2 and first["corner_max_deg"] == pytest.approx(40.0)
+    comparison = spacing_comparison.compare(SEVERAL_FACES, strategy)
+    first_row = spacing_comparison.rows(comparison, strategy, toolpath, [np.full(3, 2.0)] * 2)[0]
+    assert first_row["cornered_layers"] == 2 and first_row["corner_max_deg"] == pytest.approx(40.0)
 
 
 def test_parts_of_revolution_are_not_compared():
-    one = SimpleNamespace(strategy=RevolutionParameters(), name="cup")
-    job, planned = SimpleNamespace(features=(one,)), SimpleNamespace(planned=object())
+    cup_feature = SimpleNamespace(strategy=RevolutionParameters(), name="cup")
+    job, planned = SimpleNamespace(features=(cup_feature,)), SimpleNamespace(planned=object())
     toolpath = Toolpath((), np.eye(4), 2.0, 0.1, family="revolution")
-    (shown,) = made.compared_walls(job, toolpath, ())
-    assert (shown.name, shown.compared, shown.rows, shown.band) == ("", (), (), None)
-    assert made.add_motion(job, shown, planned, object(), None) == []
-    assert spacing_comparison.rows((), one.strategy, None, []) == []
+    (compared,) = made.compared_walls(job, toolpath, ())
+    assert (compared.name, compared.compared, compared.rows, compared.band) == ("", (), (), None)
+    assert made.add_motion(job, compared, planned, object(), None) == []
+    assert spacing_comparison.rows((), cup_feature.strategy, None, []) == []

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The thruster of Dai 2020: eighteen blades to a program for an 840D; in few layers, and as it is shipped, in 180."""
+"""The thruster of Dai 2020, eighteen blades, to a program for an 840D: in few layers, and as
+shipped in 180."""
 
 import csv
 import json
@@ -15,14 +16,14 @@ import pytest
 
 # layer height and chord error (mm) of thruster.yaml, and of a job that is planned in seconds; the fewest moves that deposit
 SHIPPED, COARSE = (2.5, 0.05, 100_000), (30.0, 0.2, 10_000)
-WRITTEN = 1e-6  # mm, of waypoints.csv: half a digit of three numbers
-# hubs by where their middle is and the largest circumcircle of their blades
+WRITTEN = 1e-6  # mm, in waypoints.csv: half a digit of three numbers
+# hubs by their centre and the largest circumcircle of their blades
 HUBS = ((70.0, 466.5), (205.0, 399.9), (326.0, 384.3))
 TAPER = math.atan2(60.0, 200.0)
 
 
 class Whole:
-    """What a run wrote, read again: columns of the rows that deposit."""
+    """The outputs of a run, read again: columns of the rows that deposit."""
 
     def __init__(self, out, size):
         self.height, self.chord, self.fewest = size
@@ -43,10 +44,10 @@ class Whole:
                 "tz",
                 "width_mm",
             )
-            kept = [header.index(name) for name in names]
+            columns_ = [header.index(name) for name in names]
             kind = header.index("kind")
             rows = np.array(
-                [[row[k] for k in kept] for row in lines if row[kind] == "deposit"],
+                [[row[k] for k in columns_] for row in lines if row[kind] == "deposit"],
                 dtype=np.float64,
             )
         self.layer, self.bead, self.point = rows[:, :3].astype(int).T
@@ -61,63 +62,68 @@ class Whole:
             path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()
         }
 
-    def away(self, places):
-        """Distance of places (n, 3) from the three bases: (3, n)."""
-        rho, z = np.hypot(places[:, 0], places[:, 1]), places[:, 2]
+    def away(self, positions):
+        """Return the distance of positions (n, 3) from the three bases: (3, n)."""
+        rho, z = np.hypot(positions[:, 0], positions[:, 1]), positions[:, 2]
         cone = (rho - 60.0) * math.cos(TAPER) + (z - 280.0) * math.sin(TAPER)
         return np.stack([rho - 75.0, rho - 60.0, cone])
 
 
 def check_levels(whole):
-    """Every point on its cone, the cones a layer height apart; between points within the chord error."""
+    """Assert that every point is on its cone, the cones are a layer height apart, and points
+    between are within the chord error."""
     moves = whole.point > 0
     middle = np.roll(whole.places, 1, axis=0)
     middle = 0.5 * (middle + whole.places)
-    hub = np.argmin(np.abs(whole.places[:, 2][:, None] - [at for at, _ in HUBS]), axis=1)
+    hub = np.argmin(np.abs(whole.places[:, 2][:, None] - [centre for centre, _ in HUBS]), axis=1)
     row = np.arange(len(hub))
-    away, between = whole.away(whole.places)[hub, row], whole.away(middle)[hub, row]
-    level = np.rint(away / whole.height)
-    assert np.abs(away - level * whole.height).max() < 1e-6 + WRITTEN
+    distances, between = whole.away(whole.places)[hub, row], whole.away(middle)[hub, row]
+    level = np.rint(distances / whole.height)
+    assert np.abs(distances - level * whole.height).max() < 1e-6 + WRITTEN
     assert np.abs(between - level * whole.height)[moves].max() < whole.chord
     for k, (_, diameter) in enumerate(HUBS):
-        mine = hub == k
-        layers = sorted(set(zip(whole.layer[mine].tolist(), level[mine].tolist(), strict=True)))
+        on_hub = hub == k
+        layers = sorted(set(zip(whole.layer[on_hub].tolist(), level[on_hub].tolist(), strict=True)))
         assert [number for _, number in layers] == list(
             range(len(layers))
-        )  # each once, and from the hub outwards
-        mean = np.array([away[mine & (whole.layer == layer)].mean() for layer, _ in layers])
+        )  # each once, from the hub outwards
+        mean = np.array([distances[on_hub & (whole.layer == layer)].mean() for layer, _ in layers])
         assert np.abs(np.diff(mean) - whole.height).max() < 1e-6
-        tip = np.hypot(*whole.places[mine, :2].T).max()
+        tip = np.hypot(*whole.places[on_hub, :2].T).max()
         assert 0.5 * diameter - whole.height < tip <= 0.5 * diameter + WRITTEN
 
 
 def check_order(whole):
-    """Ring by ring around the axis: no two beads running are on the same blade, but of those a ring has in several pieces;
-    each blade has the same share of each layer."""
-    first = np.flatnonzero(whole.point == 0)
-    ends = np.append(first[1:], len(whole.point))
+    """Assert ring by ring around the axis that no two consecutive beads are on the same blade,
+    except beads that a ring has in several sections, and that each blade has the same share of each
+    layer."""
+    starts = np.flatnonzero(whole.point == 0)
+    ends = np.append(starts[1:], len(whole.point))
     blade = []
-    for low, high in zip(first, ends, strict=True):
+    for low, high in zip(starts, ends, strict=True):
         x, y = whole.places[low:high, :2].mean(axis=0)
         blade.append(round(math.degrees(math.atan2(y, x)) / 60.0) % 6)
-    blades, layers = np.array(blade), whole.layer[first]
+    blades, layers = np.array(blade), whole.layer[starts]
     for layer in np.unique(layers):
-        mine = blades[layers == layer]
-        assert (np.bincount(mine, minlength=6) == len(mine) / 6).all()
-        turns = [one for one, _ in groupby(mine.tolist())]
+        layer_blades = blades[layers == layer]
+        assert (np.bincount(layer_blades, minlength=6) == len(layer_blades) / 6).all()
+        turns = [blade for blade, _ in groupby(layer_blades.tolist())]
         step = np.remainder(np.diff(turns), 6)
         assert len(turns) % 6 == 0 and len(set(step.tolist())) == 1 and step[0] in (1, 5)
 
 
 def check_outlines(whole):
-    """In the first layers of each hub the outermost contours of six blades come last, one blade after the other."""
-    hub = np.argmin(np.abs(whole.places[:, 2][:, None] - [at for at, _ in HUBS]), axis=1)
+    """Assert that in the first layers of each hub the outermost contours of six blades come last,
+    one blade after the other."""
+    hub = np.argmin(np.abs(whole.places[:, 2][:, None] - [centre for centre, _ in HUBS]), axis=1)
     for k in range(len(HUBS)):
         for layer in np.unique(whole.layer[hub == k])[:2]:
-            mine = np.flatnonzero(whole.layer == layer)
-            last = whole.bead[mine].max()
+            layer_rows = np.flatnonzero(whole.layer == layer)
+            last_bead = whole.bead[layer_rows].max()
             means = [
-                whole.places[mine[whole.bead[mine] == last - back], :2].mean(axis=0)
+                whole.places[layer_rows[whole.bead[layer_rows] == last_bead - back], :2].mean(
+                    axis=0
+                )
                 for back in range(6)
             ]
             turn = [math.atan2(y, x) for x, y in means]
@@ -127,25 +133,26 @@ def check_outlines(whole):
 
 
 def check_program(whole):
-    """All deposit of the texts, in the order of the parts: the places, directions and speeds of waypoints.csv."""
+    """Assert that the deposit moves of the texts, in the order of the parts, have the positions,
+    directions and speeds of waypoints.csv."""
     number = r"=?(-?\d+\.?\d*)"
-    asked = re.compile(
+    pattern = re.compile(
         " ".join(f"{word}{number}" for word in ("X", "Y", "Z", "A3", "B3", "C3"))
         + rf"(?:.* F{number})?"
     )
-    told, feed = [], math.nan
+    stated_moves, feed = [], math.nan
     for name in sorted(whole.texts):
         if name.endswith(".SPF"):
             for line in whole.texts[name].splitlines():
-                found = asked.search(line)
-                if found:
-                    feed = float(found[7]) if found[7] else feed
-                    told.append([*map(float, found.groups()[:6]), feed])
-    told, moves = np.array(told), whole.point > 0
-    assert len(told) == moves.sum() > whole.fewest
-    assert np.abs(told[:, :3] - whole.places[moves]).max() < 6e-6
-    assert np.abs(told[:, 3:6] - whole.tool[moves]).max() < 1.1e-6
-    np.testing.assert_allclose(told[:, 6] / 60.0, whole.speed[moves], rtol=1e-4)
+                match = pattern.search(line)
+                if match:
+                    feed = float(match[7]) if match[7] else feed
+                    stated_moves.append([*map(float, match.groups()[:6]), feed])
+    stated_moves, moves = np.array(stated_moves), whole.point > 0
+    assert len(stated_moves) == moves.sum() > whole.fewest
+    assert np.abs(stated_moves[:, :3] - whole.places[moves]).max() < 6e-6
+    assert np.abs(stated_moves[:, 3:6] - whole.tool[moves]).max() < 1.1e-6
+    np.testing.assert_allclose(stated_moves[:, 6] / 60.0, whole.speed[moves], rtol=1e-4)
 
 
 @pytest.fixture(
@@ -158,14 +165,14 @@ def whole(request, tmp_path_factory, root):
     shutil.copytree(root / "resources" / "examples" / "thruster", folder / "thruster")
     job = folder / "thruster" / "thruster.yaml"
     text = job.read_text(encoding="utf-8")
-    for key, shipped, asked in zip(
+    for key, shipped, command_words in zip(
         ("layer_height", "chord_error"), SHIPPED, request.param, strict=False
     ):
         assert f"  {key}: {shipped:g} mm\n" in text
-        text = text.replace(f"  {key}: {shipped:g} mm\n", f"  {key}: {asked:g} mm\n")
+        text = text.replace(f"  {key}: {shipped:g} mm\n", f"  {key}: {command_words:g} mm\n")
     job.write_text(text, encoding="utf-8")
     words = ["plan", str(job), "-o", str(folder / "out")]
-    done = subprocess.run(
+    process = subprocess.run(
         [str(root / "freecad-am"), *words],
         cwd=folder,
         capture_output=True,
@@ -174,9 +181,9 @@ def whole(request, tmp_path_factory, root):
         check=False,
         stdin=subprocess.DEVNULL,
         env={**os.environ, "FREECAD_USER_HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"},
-        timeout=1800,  # a minute of work, on a machine that may be busy
+        timeout=1800,  # a minute of work, on a possibly busy machine
     )
-    assert done.returncode == 0, done.stderr
+    assert process.returncode == 0, process.stderr
     return Whole(folder / "out", request.param)
 
 

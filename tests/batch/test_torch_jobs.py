@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`cell.nozzle.shape` in a job file: the torch of a file keeps clear, what is wrong with it is refused, and a document
-notices when it changes."""
+"""`cell.nozzle.shape` in a job file: the torch from the file keeps clear, invalid files are
+rejected, and a document notices changes of the file."""
 
 import json
 
@@ -23,7 +23,7 @@ cell:
 
 
 def torch(*boxes):
-    """Boxes (low corner, size) as one shape."""
+    """Return boxes (low corner, size) as one shape."""
     return Part.Compound([Part.makeBox(*size, FreeCAD.Vector(*low)) for low, size in boxes])
 
 
@@ -43,32 +43,32 @@ def shop(workshop):
 
 
 def test_a_job_with_a_torch(shop):
-    done = shop.run("plan", "cup.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = shop.run("plan", "cup.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     shop.write_job(shop.job.read_text().replace("  branch:", "  arm_clearance: 10 mm\n  branch:"))
-    done = shop.run("plan", "cup.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
-    # as a wide shield it cannot but be near the platform that it deposits on
+    command = shop.run("plan", "cup.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
+    # a wide shield is always near the platform on which it deposits
     torch(
         NECK,
         ((-400.0, -400.0, -95.0), (800.0, 800.0, 20.0)),
         ((-400.0, -400.0, -95.0), (20.0, 800.0, 100.0)),
     ).exportStep(str(shop.folder / "torch.step"))
-    done = shop.run("plan", "cup.yaml", "-o", "out", "--no-page")
-    assert done.status == 2 and "extends 5 mm beyond its origin" in done.err, done.err
+    command = shop.run("plan", "cup.yaml", "-o", "out", "--no-page")
+    assert command.status == 2 and "extends 5 mm beyond its origin" in command.err, command.err
     torch(
         NECK,
         ((-400.0, -400.0, -95.0), (800.0, 800.0, 20.0)),
         ((-400.0, -400.0, -75.0), (20.0, 800.0, 20.0)),
     ).exportStep(str(shop.folder / "torch.step"))
     shop.write_job(shop.job.read_text().replace("60 mm", "40 mm"))
-    done = shop.run("plan", "cup.yaml", "-o", "out", "--no-page")
-    assert done.status == 3, done.err
+    command = shop.run("plan", "cup.yaml", "-o", "out", "--no-page")
+    assert command.status == 3, command.err
     issues = json.loads((shop.folder / "out" / "report.json").read_text())["issues"]
-    near = [issue["message"] for issue in issues if issue["code"] == "ARM_CLEARANCE"]
+    messages = [issue["message"] for issue in issues if issue["code"] == "ARM_CLEARANCE"]
     assert any(
         message.startswith("the torch comes closer than 10 mm to ") or " to torch" in message
-        for message in near
+        for message in messages
     )
 
 
@@ -94,8 +94,8 @@ def test_what_is_refused(shop, shape, says):
     sides.write(str(shop.folder / "open.stl"))
     torch(((-6.0, -6.0, -300.0), (12.0, 12.0, 100.0))).exportStep(str(shop.folder / "far.step"))
     shop.write_job(shop.job.read_text().replace("shape: {file: torch.step}", f"shape: {shape}"))
-    done = shop.run("plan", "cup.yaml", "-o", "out")
-    assert done.status == 2 and done.err.startswith(says), done.err
+    command = shop.run("plan", "cup.yaml", "-o", "out")
+    assert command.status == 2 and command.err.startswith(says), command.err
     assert not (shop.folder / "out").exists()
 
 
@@ -115,6 +115,6 @@ def test_a_document_notices_and_a_saved_cell_keeps_it(shop, doc):
     path = api.export_cell(cell, str(shop.folder / "hall.yaml"))
     written = (shop.folder / "hall.yaml").read_text(encoding="utf-8")
     assert path == str(shop.folder / "hall.yaml") and 'shape: "torch.step"' in written
-    read = job_cell.read("hall.yaml", str(shop.folder))
-    assert read.nozzle.shape.file == str(shop.folder / "torch.step")
-    assert interop.cell_text(read, str(shop.folder)) == written
+    read_cell = job_cell.read("hall.yaml", str(shop.folder))
+    assert read_cell.nozzle.shape.file == str(shop.folder / "torch.step")
+    assert interop.cell_text(read_cell, str(shop.folder)) == written

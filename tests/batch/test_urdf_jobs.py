@@ -20,7 +20,8 @@ program: {post: POST}
 
 @pytest.fixture
 def planned(workshop):
-    """Plans the cup on a machine; the robot of the default cell stands as arm.urdf beside the job."""
+    """Return a function that plans the cup on a machine; the robot of the default cell is arm.urdf
+    next to the job."""
     text = urdf_text.text(machine.load("fanuc-arcmate120ic"))
     (workshop.folder / "arm.urdf").write_text(text, encoding="utf-8")
 
@@ -34,34 +35,34 @@ def planned(workshop):
 def test_a_job_on_a_urdf_moves_as_on_the_machine_file(planned, workshop):
     angles = []
     for name in ("fanuc-arcmate120ic", "{file: arm.urdf, base: base_link, tip: tool0}"):
-        done = planned(name)
-        assert done.status == 0, done.err
+        command = planned(name)
+        assert command.status == 0, command.err
         rows, _ = deposit(workshop.files()["waypoints.csv"].decode())
         angles.append([[float(row[f"q{axis}_deg"]) for axis in range(1, 7)] for row in rows])
     assert len(angles[0]) > 100
-    for first, second in zip(*angles, strict=True):
-        assert second == pytest.approx(first, abs=1e-5)
+    for urdf_angles, file_angles in zip(*angles, strict=True):
+        assert file_angles == pytest.approx(urdf_angles, abs=1e-5)
     assert json.loads(workshop.files()["report.json"])["machine"]["title"] == "fanuc-arcmate120ic"
 
 
 def test_a_robot_with_its_track_is_refused_and_told_where_the_robot_begins(planned, workshop):
-    """It was taken for a five-axis machine, whatever else was chosen. The remedy that is told is one."""
+    """It was once read as a five-axis machine. The remedy in the message works."""
     (workshop.folder / "rail.urdf").write_text(
         mount_on_track((workshop.folder / "arm.urdf").read_text()), encoding="utf-8"
     )
     for name in ("rail.urdf", "rail.urdf, setup: tool-on-robot"):
-        done = planned(name)
+        command = planned(name)
         assert (
-            done.status == 2
-            and "error[NO_CLOSED_FORM] cup.yaml: cell.machine: rail.urdf" in done.err
+            command.status == 2
+            and "error[NO_CLOSED_FORM] cup.yaml: cell.machine: rail.urdf" in command.err
         )
         assert (
             "rail.urdf from base_link to tool0: the kinematics of the machine is not supported: the first axis is prismatic"
-            in done.err
+            in command.err
         )
         assert (
             "`cell.external` with `carries: robot`; the robot begins at the link 'carriage'"
-            in done.err
+            in command.err
         )
     alone = planned("{file: rail.urdf, base: carriage}")
     assert alone.status == 0, alone.err
@@ -81,20 +82,20 @@ def test_a_mirrored_mesh_is_told_in_the_job_and_changes_no_path(planned, worksho
         .replace('<link name="link_6"/>', f'<link name="link_6">{mesh}</link>')
     )
     (workshop.folder / "arm.urdf").write_text(text, encoding="utf-8")
-    done = planned("arm.urdf")
-    assert done.status == 0 and "note[URDF_LOOKS]" in done.err
+    command = planned("arm.urdf")
+    assert command.status == 0 and "note[URDF_LOOKS]" in command.err
     assert (
-        "hand.stl is mirrored or flat by its scale 1 1 -1" in done.err
-        and "link_6 is drawn plain" in done.err
+        "hand.stl is mirrored or flat by its scale 1 1 -1" in command.err
+        and "link_6 is drawn plain" in command.err
     )
     assert workshop.files()["waypoints.csv"] == rows
 
 
 def test_a_program_is_refused_for_a_controller_that_a_urdf_does_not_tell_of(planned):
-    done = planned("arm.urdf", "fanuc")
+    command = planned("arm.urdf", "fanuc")
     assert (
-        done.status == 2
-        and "does not define the display of the controller; plan without a program" in done.err
+        command.status == 2
+        and "does not define the display of the controller; plan without a program" in command.err
     )
 
 
@@ -105,10 +106,10 @@ def test_an_arm_without_a_closed_form_is_refused_with_the_reason(planned, worksh
         .replace('xyz="0.835 0.0 0.0"', 'xyz="0.835 0.0 0.02"')
     )
     (workshop.folder / "arm.urdf").write_text(text, encoding="utf-8")
-    done = planned("arm.urdf")
-    assert done.status == 2 and "error[NO_CLOSED_FORM]" in done.err
+    command = planned("arm.urdf")
+    assert command.status == 2 and "error[NO_CLOSED_FORM]" in command.err
     assert (
         "arm.urdf from base_link to tool0: the kinematics of the machine is not supported: the wrist is not spherical"
-        in done.err
+        in command.err
     )
-    assert "axes 4 and 5 do not meet" in done.err
+    assert "axes 4 and 5 do not meet" in command.err

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls of any connected faces: meshes, first curves and rims against the shapes' equations; refusals by real bad shapes."""
+"""Walls of any connected faces: meshes, first curves and rims compared with the shapes' equations;
+refusals of real faulty shapes."""
 
 import MeshPart
 import numpy as np
@@ -42,39 +43,42 @@ def shell(*faces):
     return Part.Compound(list(faces))
 
 
-def on_both(points):
+def distances_from_both(points):
     x, y, z = points.T
     assert np.hypot(x, z) == pytest.approx(PIPE, abs=1e-9)
     assert np.hypot(np.hypot(x + BEND, z) - BEND, y) == pytest.approx(TUBE, abs=1e-9)
 
 
 def sound(wall, shape):
-    """Watertight but for its rims, on the faces, turned to one side, its edges short."""
-    ends, many = boundary(wall.triangles)
-    assert not many.any()
+    """Assert that a wall mesh is watertight except at its rims, on the faces, consistently
+    oriented, with short edges."""
+    ends, rim_count = boundary(wall.triangles)
+    assert not rim_count.any()
     rims = sum(len(rim.points) - 1 for rim in wall.rims)
     assert rims == len(ends)
-    some = wall.vertices[:: max(1, len(wall.vertices) // 25)]
-    assert max(shape.distToShape(Part.Vertex(Vector(*point)))[0] for point in some) < 1e-5
+    sample_ = wall.vertices[:: max(1, len(wall.vertices) // 25)]
+    assert max(shape.distToShape(Part.Vertex(Vector(*point)))[0] for point in sample_) < 1e-5
     corner = wall.vertices[wall.triangles]
     facet = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     feet, normals = wall.project(corner.mean(axis=1))
     assert (np.einsum("ij,ij->i", facet, normals) > 0.0).all()
-    some = feet[:: max(1, len(feet) // 25)]
-    assert max(shape.distToShape(Part.Vertex(Vector(*point)))[0] for point in some) < 1e-4
+    sample_ = feet[:: max(1, len(feet) // 25)]
+    assert max(shape.distToShape(Part.Vertex(Vector(*point)))[0] for point in sample_) < 1e-4
 
 
 def test_two_halves_of_a_bend_anywhere_in_space():
-    place = Placement(Vector(10, -20, 30), Rotation(Vector(1, 2, 3), 50))
+    placement = Placement(Vector(10, -20, 30), Rotation(Vector(1, 2, 3), 50))
     halves = shell(bend(start=20.0, width=180.0), bend(start=200.0, width=180.0))
     moved, ground = halves.copy(), pipe()
-    moved.Placement, ground.Placement = place, place.multiply(ground.Placement)
+    moved.Placement, ground.Placement = placement, placement.multiply(ground.Placement)
     wall = wall_on(shell(*moved.Faces), (), ground, 5.0)
     if isinstance(wall, SurfaceWall):  # both are of one torus: exact without a mesh
         points = wall.first
     else:
         points = wall.first[0].points
-    on_both(np.array([tuple(place.inverse().multVec(Vector(*point))) for point in points]))
+    distances_from_both(
+        np.array([tuple(placement.inverse().multVec(Vector(*point))) for point in points])
+    )
 
 
 def test_half_shell_starts_in_a_chain_from_side_to_side():
@@ -83,7 +87,7 @@ def test_half_shell_starts_in_a_chain_from_side_to_side():
     sound(wall, half)
     (curve,) = wall.first
     assert not curve.closed
-    on_both(curve.points[1:-1])
+    distances_from_both(curve.points[1:-1])
     x, y, z = curve.points[[0, -1]].T
     angle = np.degrees(np.arctan2(y, np.hypot(x + BEND, z) - BEND))
     assert np.sort(angle) == pytest.approx([-20.0, 160.0], abs=1e-5)
@@ -100,7 +104,7 @@ def test_fronts_may_be_asked_for_on_a_tube_of_one_surface():
     sound(wall, bend())
     (curve,) = wall.first
     assert curve.closed and [rim.closed for rim in wall.rims] == [True] * len(wall.rims)
-    on_both(curve.points)
+    distances_from_both(curve.points)
     assert np.abs(wall.symmetry_normal) == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
     half = wall_on(bend(start=20.0, width=180.0), (), pipe(), 5.0)
     assert half.symmetry_normal is None  # its bend may lean out of that plane
@@ -121,7 +125,7 @@ def test_three_tangent_faces():
 
 
 def test_dome_of_sphere_and_cone():
-    cone = Part.makeCone(30.0, 20.0, 40.0)  # runs on from a sphere where their slopes agree
+    cone = Part.makeCone(30.0, 20.0, 40.0)  # it continues from a sphere with the same slope
     slope = np.arctan2(10.0, 40.0)
     radius = 20.0 / np.cos(slope)
     middle = Vector(0, 0, 40.0 - radius * np.sin(slope))
@@ -216,7 +220,8 @@ def test_chosen_edges_need_no_substrate():
 
 
 def oval(turned=0.0):
-    """Two halves of a lofted tube that is of no revolution, and its ends as (x, y) semi-axes by height."""
+    """Return two halves of a lofted tube that is not of revolution, and its ends as (x, y)
+    semi-axes by height."""
     ends = []
     for half in (0.0, np.pi):
         for z, (a, b) in ((0.0, (30.0, 18.0)), (60.0, (22.0, 36.0))):
@@ -234,11 +239,11 @@ def oval(turned=0.0):
 
 @pytest.mark.any_version
 def test_what_stands_on_the_platform_needs_no_substrate_either():
-    """Faces that are not sewn; their common edges are none to start from."""
+    """The faces are not sewn, and a wall cannot start at their common edges."""
     wall = wall_on(oval(), (), None, 4.0, "Vase")
-    (first,), (note,) = wall.first, wall.issues
-    assert first.closed and first.points[:, 2] == pytest.approx(0.0, abs=1e-6)
-    x, y = first.points[:, :2].T
+    (first_curve,), (note,) = wall.first, wall.issues
+    assert first_curve.closed and first_curve.points[:, 2] == pytest.approx(0.0, abs=1e-6)
+    x, y = first_curve.points[:, :2].T
     assert np.hypot(x / 30.0, y / 18.0) == pytest.approx(1.0, abs=1e-6) and abs(np.ptp(x)) > 59.0
     assert (
         note.code == "FIRST_LAYER" and "Vase" in note.message and "on the platform" in note.message
@@ -254,7 +259,7 @@ def test_what_stands_on_the_platform_needs_no_substrate_either():
             4.0,
         )
         assert (
-            sum(one.curve().length for one in half.first) == pytest.approx(length)
+            sum(curve.curve().length for curve in half.first) == pytest.approx(length)
             and not half.first[0].closed
         )
     with pytest.raises(InputError) as caught:
@@ -266,13 +271,13 @@ def test_what_stands_on_the_platform_needs_no_substrate_either():
 def test_several_loops_are_all_taken_and_told():
     wall = wall_on(Part.makeCylinder(5, 120, Vector(0, 0, -60)).Faces[0], (), pipe(), 3.0)
     assert len(wall.first) == 2
-    (told,) = (issue.message for issue in wall.issues if issue.code == "SEVERAL_LOOPS")
-    assert "2 curves" in told and "31" in told and "-31" in told
+    (message,) = (issue.message for issue in wall.issues if issue.code == "SEVERAL_LOOPS")
+    assert "2 curves" in message and "31" in message and "-31" in message
 
 
-def refused(*args, **more):
+def refused(*args, **options):
     with pytest.raises(InputError) as caught:
-        wall_on(*args, label="Wall", substrate_label="Pipe", **more)
+        wall_on(*args, label="Wall", substrate_label="Pipe", **options)
     return caught.value
 
 
@@ -290,7 +295,7 @@ def reversed_solid():
     return solid
 
 
-def moved(face, *by):
+def move_face(face, *by):
     face = face.copy()
     face.translate(Vector(*by))
     return face
@@ -305,14 +310,15 @@ def tight_pipe():
 
 
 def test_a_sheared_tube_has_a_mesh_of_its_own_size():
-    # edges across the tube were halved without end: 341,616 triangles, and pairs of them in more than 9 GB
-    rings = [Part.Wire(Part.makeCircle(5, Vector(*at))) for at in ((0, 0, 20), (25, 0, 88))]
-    made = Part.makeLoft(rings, False, False)
-    wall = sheet([("Face1", made.Faces[0])], 2.0, "Wall")
+    # edges across the tube were once halved without end: 341,616 triangles, and pairs of them in
+    # more than 9 GB
+    rings = [Part.Wire(Part.makeCircle(5, Vector(*centre))) for centre in ((0, 0, 20), (25, 0, 88))]
+    loft = Part.makeLoft(rings, False, False)
+    wall = sheet([("Face1", loft.Faces[0])], 2.0, "Wall")
     corner = wall.vertices[wall.triangles]
     edges = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)
     assert edges.max() <= 2.0 + 1e-9 and edges.min() > 1e-3 and len(wall.triangles) < 20_000
-    # each triangle lies along the tube: a circle of radius 5 in every horizontal plane
+    # each triangle is along the tube: a circle of radius 5 in every horizontal plane
     middle = corner.mean(axis=1)
     radius = np.hypot(middle[:, 0] - (middle[:, 2] - 20.0) * 25.0 / 68.0, middle[:, 1])
     assert radius.min() > 5.0 - 0.3 and radius.max() < 5.0 + 1e-6
@@ -352,14 +358,14 @@ def blade():
         (lambda: bend(start=0, width=180), reversed_solid, 5.0, "INSIDE_OUT", ["volume"]),
         (lambda: bend(), open_mesh, 5.0, "OPEN_MESH", ["mm across"]),
         (
-            lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 30.1)),
+            lambda: shell(tube(height=30), move_face(tube(height=30), 0, 0, 30.1)),
             slab,
             4.0,
             "GAP",
             ["0.1 mm", "0.01 mm"],
         ),
         (
-            lambda: shell(tube(height=30), moved(tube(height=30), 0, 0, 33)),
+            lambda: shell(tube(height=30), move_face(tube(height=30), 0, 0, 33)),
             slab,
             4.0,
             "GAP",
@@ -373,14 +379,14 @@ def blade():
             ["18.4 deg"],
         ),
         (
-            lambda: shell(tube(2.0, 30.0), moved(tube(2.0, 30.0), 0, 0, 30)),
+            lambda: shell(tube(2.0, 30.0), move_face(tube(2.0, 30.0), 0, 0, 30)),
             slab,
             4.0,
             "LAYER_HEIGHT",
             ["2 mm"],
         ),
         (tight_pipe, slab, 2.0, "SELF_INTERSECTION", ["intersects itself"]),
-        # noses of a blade turn over sharply and do not fold
+        # noses of a blade have a sharp turn but no fold
         pytest.param(
             blade,
             slab,
@@ -405,7 +411,8 @@ def test_refusals_by_real_shapes(make, substrate, height, code, words):
 )
 @pytest.mark.always("10.0-120.0-0.9-3.0")
 def test_the_mesh_of_a_slanted_tube_has_no_edges_across(radius, tall, lean, edge):
-    """Long needles, of which edges that are turned reached from side to side: halving them never ended."""
+    """Flipping the edges of long needles once made edges from side to side, whose halving never
+    ended."""
     skin = Part.makeCircle(radius).extrude(Vector(lean * tall, 0, tall)).toNurbs()
     wall = sheet([("Face1", skin.Faces[0])], edge, "Wall")
     corner = wall.vertices[wall.triangles]
@@ -417,8 +424,8 @@ def test_the_mesh_of_a_slanted_tube_has_no_edges_across(radius, tall, lean, edge
 
 @pytest.mark.any_version
 def test_the_mesh_of_a_slanted_tube_that_is_cut_has_no_edges_across():
-    """Edges that were turned stayed as long as they were, round for round: the mesh was given back unfinished, and to look
-    where it cuts itself took more than a minute."""
+    """Flipped edges once kept their length in each pass: the mesh was unfinished, and the search
+    for self-intersections took more than a minute."""
     radius, low, tall, lean, edge = 89.16, -185.0, 580.0, 1.0627, 40.0
     circle = Part.makeCircle(radius, Vector(lean * low, 0, low))
     tube = circle.extrude(Vector(lean * (tall - low), 0, tall - low))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes without solids, and damaged ones: the message says where they are open and what to do."""
+"""Shapes without solids, and damaged ones: the message states where they are open and the
+remedy."""
 
 import Part
 import pytest
@@ -12,7 +13,7 @@ from freecad_am.core.issues import InputError
 
 
 def loose_faces():
-    """The six faces of a box at (10, 20, 30), none of which shares an edge with another."""
+    """Return the six faces of a box at (10, 20, 30), none of which shares an edge with another."""
     box = Part.makeBox(4, 6, 8)
     box.translate((10, 20, 30))
     return Part.makeCompound([face.copy() for face in box.Faces])
@@ -24,9 +25,9 @@ def refused(shape):
     with pytest.raises(InputError) as of_substrate:
         substrate_of(shape, "Box")
     assert caught.value.code == of_substrate.value.code == "NO_SOLID"
-    ways = [str(error.value.message).rsplit("choose", 1)[0] for error in (caught, of_substrate)]
-    assert ways[0] == ways[1]
-    return ways[0]
+    messages = [str(error.value.message).rsplit("choose", 1)[0] for error in (caught, of_substrate)]
+    assert messages[0] == messages[1]
+    return messages[0]
 
 
 def test_faces_of_an_iges_file_that_are_not_joined_are_to_be_sewn(tmp_path):
@@ -36,7 +37,7 @@ def test_faces_of_an_iges_file_that_are_not_joined_are_to_be_sewn(tmp_path):
     assert len(shape.Faces) == 6 and not shape.Solids
     message = refused(shape)
     assert "6 open face(s)" in message and "Shell from faces, then Solid from shell" in message
-    sewn = Part.Solid(Part.Shell(shape.Faces))  # what the message says
+    sewn = Part.Solid(Part.Shell(shape.Faces))  # the remedy of the message
     (body,) = bodies_of(sewn, "Box", 0.05, 0.0).bodies
     assert len(body.triangles) == 12
 

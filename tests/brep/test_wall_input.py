@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls of any faces: what is refused and where, and substrates of triangles from files and of any size."""
+"""Walls of any faces: refusals with their position, and substrates of triangles from files and of
+any size."""
 
 import Mesh
 import MeshPart
@@ -48,7 +49,7 @@ def fan():
 
 
 def twisted_band(count):
-    """A band with half a twist, of `count` ruled faces."""
+    """Return a band with half a twist, of `count` ruled faces."""
 
     def point(angle, side):
         reach = 30.0 + side * np.cos(0.5 * angle)
@@ -68,7 +69,8 @@ def twisted_band(count):
                 points, Parameters=angles.tolist(), InitialTangent=slopes[0], FinalTangent=slopes[1]
             )
             curves.append(curve)
-        # not Part.makeRuledSurface: since FreeCAD 1.0 it turns an edge around where that brings ends together
+        # not Part.makeRuledSurface, which since FreeCAD 1.0 reverses an edge if that brings ends
+        # together
         poles = [list(pair) for pair in zip(*(curve.getPoles() for curve in curves), strict=True)]
         knots, mults = curves[0].getKnots(), curves[0].getMultiplicities()
         surface = Part.BSplineSurface()
@@ -253,9 +255,7 @@ def test_meshes_that_can_be_mended_are():
 
 def test_doubled_points_and_triangles_without_area_do_no_harm():
     points, corners = box()
-    loose = points[corners].reshape(
-        -1, 3
-    )  # each triangle with points of its own, as STL files have them
+    loose = points[corners].reshape(-1, 3)  # each triangle has points of its own, as in STL files
     triangles = np.arange(len(loose)).reshape(-1, 3)
     thin = np.array([[0, 0, 1], [2, 2, 2]])
     solid, issues = mesh_solid(loose, np.vstack([triangles, thin]), "Scan")
@@ -265,15 +265,15 @@ def test_doubled_points_and_triangles_without_area_do_no_harm():
 
 
 def test_mesh_files_bring_the_same_solid(tmp_path):
-    made = MeshPart.meshFromShape(Shape=pipe(), LinearDeflection=0.2, AngularDeflection=0.3)
+    mesh = MeshPart.meshFromShape(Shape=pipe(), LinearDeflection=0.2, AngularDeflection=0.3)
     for suffix, kind in (("stl", "STL"), ("stl", "AST"), ("obj", "OBJ"), ("3mf", "3MF")):
         file = tmp_path / f"{kind}.{suffix}"
-        made.write(Filename=str(file), Format=kind)
+        mesh.write(Filename=str(file), Format=kind)
         if kind == "AST":
             assert file.read_bytes().startswith(b"solid")
         solid = substrate_of(read_mesh(file), "Scan").solid
-        assert len(solid.triangles) == made.CountFacets, kind
-        assert solid.volume == pytest.approx(made.Volume, rel=1e-5), kind
+        assert len(solid.triangles) == mesh.CountFacets, kind
+        assert solid.volume == pytest.approx(mesh.Volume, rel=1e-5), kind
 
 
 @pytest.mark.parametrize(
@@ -294,7 +294,7 @@ def test_bad_mesh_files(tmp_path, name, content, code):
 
 @pytest.mark.parametrize("angle", [0.05, 0.1, 0.2])
 def test_first_layers_on_meshes_are_as_good_as_the_facets(angle):
-    """A chord of a round pipe is off by its sagitta: so may the curve be, and not by more than a little."""
+    """A chord of a round pipe deviates by its sagitta, and the curve by hardly more."""
     mesh = MeshPart.meshFromShape(Shape=pipe(), LinearDeflection=1.0, AngularDeflection=angle)
     points, corners = mesh.Topology
     points = np.array([tuple(point) for point in points])
@@ -329,17 +329,20 @@ def test_stored_and_read_back_equal():
     assert again.issues == wall.issues and again.faces == wall.faces
     assert [rim.end for rim in again.rims] == [rim.end for rim in wall.rims]
     assert (again.first[0].points == wall.first[0].points).all()
-    near = wall.vertices[::7] + 0.01
-    assert all((one == other).all() for one, other in zip(again.project(near), wall.project(near)))
+    queries = wall.vertices[::7] + 0.01
+    assert all(
+        (reread == original).all()
+        for reread, original in zip(again.project(queries), wall.project(queries))
+    )
 
 
 def test_a_branch_that_comes_out_on_both_sides_grows_on_both_and_one_from_the_bore_on_one():
     through = Part.makeCylinder(5, 120, Vector(0, 0, -60)).Faces[0]
-    both = wall_on(through, (), pipe(29.0), 3.0)
-    assert sorted(np.sign(curve.points[:, 2].mean()) for curve in both.first) == [-1.0, 1.0]
+    wall = wall_on(through, (), pipe(29.0), 3.0)
+    assert sorted(np.sign(curve.points[:, 2].mean()) for curve in wall.first) == [-1.0, 1.0]
     assert all(
         np.hypot(curve.points[:, 0], curve.points[:, 2]) == pytest.approx(RADIUS, abs=1e-9)
-        for curve in both.first
+        for curve in wall.first
     )
     branch = wall_on(Part.makeCylinder(5, 60).Faces[0], (), pipe(29.0), 3.0)
     assert not isinstance(branch, PatchWall)
@@ -347,7 +350,7 @@ def test_a_branch_that_comes_out_on_both_sides_grows_on_both_and_one_from_the_bo
 
 
 def test_a_mesh_that_comes_to_no_end_is_not_said_to_have_too_many_triangles(monkeypatch):
-    monkeypatch.setattr(sheet, "refine_mesh", lambda *args, **more: None)
+    monkeypatch.setattr(sheet, "refine_mesh", lambda *args, **options: None)
     with pytest.raises(InputError) as caught:
         wall_on(half_tube(), (), slab(), 4.0, "Wall", "Slab")
     assert caught.value.code == "TOO_FINE"

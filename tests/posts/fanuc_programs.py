@@ -47,23 +47,23 @@ def beads(count, points, layers=1, **options):
     return program(*blocks, **options)
 
 
-def with_tool(of, **more):
+def put_tool_on_robot(source, **changes):
     """Return the program with the tool on the robot and a fixed platform."""
     return dataclasses.replace(
-        of,
+        source,
         **{
             "name": "tool",
             "setup": "tool-on-robot",
             "station": (700.0, 10.5, -100.0, 0.1, -0.2, 3.0),
             "carried": (0.0, 0.0, 150.0, 0.0, 0.0, 0.5),
-            **more,
+            **changes,
         },
     )
 
 
-def refusal(of, *, code, where=None):
+def refusal(program_, *, code, where=None):
     with pytest.raises(InputError) as raised:
-        fanuc.write(of)
+        fanuc.write(program_)
     assert raised.value.code == code and where in (None, raised.value.where)
     return raised.value.message
 
@@ -101,12 +101,12 @@ GOLDEN_TABLE = program(
 )  # fmt: skip
 
 
-def early(of, ahead=0.05, **more):
+def switch_on_moves(source, lead=0.05, **changes):
     """Return the program with the deposit switched on the moves themselves."""
     blocks = [
-        dataclasses.replace(block, lead=0.0, ahead=ahead)
+        dataclasses.replace(block, lead=0.0, ahead=lead)
         if isinstance(block, (DepositOn, DepositOff))
         else block
-        for block in of.blocks
+        for block in source.blocks
     ]
-    return dataclasses.replace(of, blocks=tuple(blocks), **{"name": "early", **more})
+    return dataclasses.replace(source, blocks=tuple(blocks), **{"name": "early", **changes})

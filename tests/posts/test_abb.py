@@ -25,7 +25,7 @@ from freecad_am.core.program import (
 )
 from freecad_am.posts import catalogue
 from freecad_am.posts.abb import post as abb
-from tests.posts.fanuc_programs import with_tool
+from tests.posts.fanuc_programs import put_tool_on_robot
 
 VARIANTS = [
     ("joint", "part-on-robot"),
@@ -308,8 +308,8 @@ GOLDENS = {
     "track": put_on_track(HELD_PART, max_points=2000),
     "track-joint": put_on_track(JOINT),
     "both": put_on_track_with_positioner(HELD_PART),
-    "tool-joint": with_tool(JOINT),
-    "tool": with_tool(HELD_PART),
+    "tool-joint": put_tool_on_robot(JOINT),
+    "tool": put_tool_on_robot(HELD_PART),
     "positioner-joint": add_positioner(JOINT),
     "both-joint": put_on_track_with_positioner(JOINT),
 }

@@ -28,7 +28,7 @@ from freecad_am.posts.abb import post as abb
 from freecad_am.posts.catalogue import lines_of as found_lines
 from freecad_am.read_back.events import MOST_DIGITS, timed
 from freecad_am.verify import verify
-from tests.posts.fanuc_programs import with_tool
+from tests.posts.fanuc_programs import put_tool_on_robot
 from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
 from tests.posts.test_abb import HELD_PART, JOINT, add_positioner
 from tests.programs import build
@@ -403,7 +403,7 @@ def with_process_data(source, name, **options):
     return dataclasses.replace(source, name=name, blocks=tuple(blocks), max_points=2000)
 
 
-TOOL = with_tool(HELD_PART)
+TOOL = put_tool_on_robot(HELD_PART)
 GOLDENS = {
     "arc": with_process_data(add_positioner(HELD_PART), "arc", arc=5, weave=2),
     "arc-held": with_process_data(HELD_PART, "archeld", arc=5),

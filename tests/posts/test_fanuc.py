@@ -17,8 +17,8 @@ from tests.posts.fanuc_programs import (
     beads,
     moves,
     program,
+    put_tool_on_robot,
     refusal,
-    with_tool,
 )
 
 
@@ -33,7 +33,7 @@ GOLDENS = {
     "joint": GOLDEN_JOINT,
     "table": GOLDEN_TABLE,
     "parts": beads(1, 12, layers=2, name="parts", max_points=10),
-    "tool": with_tool(GOLDEN_JOINT),
+    "tool": put_tool_on_robot(GOLDEN_JOINT),
 }
 
 

@@ -15,16 +15,25 @@ from freecad_am.core.planning.program import rows_from
 from freecad_am.core.program import DepositOff, DepositOn, Moves, Weave
 from freecad_am.posts.fanuc import post as fanuc
 from freecad_am.verify import verify
-from tests.posts.fanuc_programs import GOLDEN_JOINT, GOLDEN_TABLE, beads, early, refusal, with_tool
+from tests.posts.fanuc_programs import (
+    GOLDEN_JOINT,
+    GOLDEN_TABLE,
+    beads,
+    put_tool_on_robot,
+    refusal,
+    switch_on_moves,
+)
 from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
 from tests.posts.test_fanuc import add_second_group, body
 from tests.posts.test_fanuc_read import by_hand
 from tests.programs import build
 
-GROUPED = early(add_second_group(beads(1, 12, layers=2, max_points=8)), 0.0, name="earlygrp")
+GROUPED = switch_on_moves(
+    add_second_group(beads(1, 12, layers=2, max_points=8)), 0.0, name="earlygrp"
+)
 GOLDENS = {
-    "EARLY.LS": early(with_tool(GOLDEN_JOINT)),
-    "EARLYTAB.LS": early(GOLDEN_TABLE, 0.1, name="earlytab"),
+    "EARLY.LS": switch_on_moves(put_tool_on_robot(GOLDEN_JOINT)),
+    "EARLYTAB.LS": switch_on_moves(GOLDEN_TABLE, 0.1, name="earlytab"),
     "EARLYGRP*.LS": GROUPED,
 }
 
@@ -40,7 +49,7 @@ def test_golden_listings_to_the_byte(root, names, assert_listings):
 
 
 def test_it_stands_on_the_moves_that_end_there_as_controllers_write_it():
-    source = early(with_tool(GOLDEN_JOINT))
+    source = switch_on_moves(put_tool_on_robot(GOLDEN_JOINT))
     switch_lines = [line for line in body(fanuc.write(source)["EARLY.LS"]) if "DO[" in line]
     assert switch_lines == [
         "J P[2] 2500msec FINE TB    .05sec,DO[1]=ON    ;",
@@ -59,7 +68,7 @@ def test_it_stands_on_the_moves_that_end_there_as_controllers_write_it():
     ] == [(2, "on", 1.0, "DO", 0.05, 0.005), (5, "off", 1.0, "DO", 0.05, 0.005)]
     assert (
         readback.deposit.tolist()
-        == fanuc.read(fanuc.write(with_tool(GOLDEN_JOINT))).deposit.tolist()
+        == fanuc.read(fanuc.write(put_tool_on_robot(GOLDEN_JOINT))).deposit.tolist()
     )
     # cut inside the beads: the output stays on, and is switched off on the very last move
     files = fanuc.write(GROUPED)
@@ -71,7 +80,7 @@ def test_it_stands_on_the_moves_that_end_there_as_controllers_write_it():
         (f"EARLYGRP0{n}.LS", [word]) for n, word in ((1, "ON"), (2, "OFF"), (3, "ON"), (4, "OFF"))
     ]
     refusal(
-        early(GOLDEN_TABLE, 0.11), code="TRIGGER_LEAD", where="layer 0 bead 0"
+        switch_on_moves(GOLDEN_TABLE, 0.11), code="TRIGGER_LEAD", where="layer 0 bead 0"
     )  # moves take 0.1 s
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is written for a KUKA controller: modules to the byte, splitting, speeds, what is refused; and what is read of
-modules by hand."""
+"""KUKA modules: exact bytes, splitting, speeds, refusals, and reading of modules written by
+hand."""
 
 import dataclasses
 import json
@@ -34,10 +34,10 @@ from freecad_am.posts.kuka import post as kuka
 
 NOMINAL = tuple(math.radians(value) for value in (156.0, 156.0, 156.0, 330.0, 330.0, 615.0))
 NUMBER = r"-?\d+\.\d{%d}"
-BESIDE = rf"(?:,E2 {NUMBER % 4},E3 {NUMBER % 4}(?:,E4 {NUMBER % 4})?|,E1 {NUMBER % 4})?"
+EXTERNAL_AXES = rf"(?:,E2 {NUMBER % 4},E3 {NUMBER % 4}(?:,E4 {NUMBER % 4})?|,E1 {NUMBER % 4})?"
 INSTRUCTIONS = [
-    "PTP {" + ",".join(f"A{axis} {NUMBER % 4}" for axis in range(1, 7)) + BESIDE + "}",
-    "LIN {" + ",".join(f"{axis} {NUMBER % (3 if axis in 'XYZ' else 4)}" for axis in "XYZABC") + BESIDE + "}(?: C_DIS)?",
+    "PTP {" + ",".join(f"A{axis} {NUMBER % 4}" for axis in range(1, 7)) + EXTERNAL_AXES + "}",
+    "LIN {" + ",".join(f"{axis} {NUMBER % (3 if axis in 'XYZ' else 4)}" for axis in "XYZABC") + EXTERNAL_AXES + "}(?: C_DIS)?",
     r"\$BASE=EK\(MACHINE_DEF\[3\]\.ROOT,MACHINE_DEF\[3\]\.MECH_TYPE,BASE_DATA\[\d+\]\)", r"\$VEL_EXTAX\[[1234]\]=\d+",
     r"BAS\(#(?:INITMOV,0|BASE,\d+|TOOL,\d+|VEL_PTP,(?:[1-9]\d?|100))\)", r"\$IPO_MODE=#BASE", r"\$ORI_TYPE=#VAR",
     r"\$VEL\.CP=[0-2]\.\d{6}", r"\$APO\.CDIS=\d+\.\d{3}", r"\$OUT\[\d+\]=(?:TRUE|FALSE)", r"WAIT SEC (?:0|\d+\.\d{3})",
@@ -56,8 +56,8 @@ def moves(kind, degrees, duration=0.5, layer=0, bead=0, speed=6.0, **extra):
     )
 
 
-def laid(points, layer=0, bead=0, speed=6.0, duration=0.25):
-    """A bead of so many points in linear moves, the tool turning all ways."""
+def linear_bead(points, layer=0, bead=0, speed=6.0, duration=0.25):
+    """Return a bead of linear moves through the points, with the tool turning in all directions."""
     k = np.arange(points)[:, None]
     turns = Rotation.from_euler(
         "ZYX", np.hstack([10.0 * k, 3.0 * k - 20.0, 179.0 + k]), degrees=True
@@ -84,13 +84,13 @@ def program(*blocks, name="part", **options):
 
 
 def beads(count, points, layers=1, **options):
-    """Beads of so many points each, each with two rapid moves before it."""
+    """Return beads of `points` points each, each after two rapid moves."""
     blocks = []
     for layer in range(layers):
         blocks.append(LayerStart(layer))
         for bead in range(count):
             blocks += [moves("rapid", [[1.0] * 6, [0.0] * 6], layer=layer, bead=bead), DepositOn()]
-            blocks += [laid(points, layer, bead), DepositOff()]
+            blocks += [linear_bead(points, layer, bead), DepositOff()]
     return program(*blocks, **options)
 
 
@@ -98,55 +98,58 @@ def lines(files, name):
     return files[name].decode("ascii").split("\r\n")[3:-2]
 
 
-def refusal(of, *, code, where=None):
+def refusal(source, *, code, where=None):
     with pytest.raises(InputError) as raised:
-        kuka.write(of)
+        kuka.write(source)
     assert raised.value.code == code and where in (None, raised.value.where)
     return raised.value.message
 
 
 def assert_modules(files):
-    """Plain instructions only, a name as that of its file, no approximation before a stop, all that moves count on set."""
+    """Assert that a module has plain instructions only, the name of its file, no approximation
+    before a stop, and all settings of its moves."""
     for file, content in files.items():
         text = content.decode("ascii")
         assert text.count("\n") == text.count("\r\n") and text.endswith("\r\nEND\r\n")
         assert text.startswith(f"&ACCESS RVP\r\n&REL 1\r\nDEF {file.removesuffix('.src')}()\r\n")
-        told = lines(files, file)
+        statements = lines(files, file)
         assert not [
             line
-            for line in told
+            for line in statements
             if not any(re.fullmatch(pattern, line) for pattern in INSTRUCTIONS)
         ]
-        moving = [n for n, line in enumerate(told) if line.startswith(("PTP", "LIN"))]
+        moving = [n for n, line in enumerate(statements) if line.startswith(("PTP", "LIN"))]
         for n in moving:
-            before = "\n".join(told[:n])
+            text_before = "\n".join(statements[:n])
             assert all(
-                word in before for word in ("INITMOV", "#BASE,", "#TOOL,", "IPO_MODE", "ORI_TYPE")
+                word in text_before
+                for word in ("INITMOV", "#BASE,", "#TOOL,", "IPO_MODE", "ORI_TYPE")
             )
-            assert ("VEL_PTP" if told[n].startswith("PTP") else "$VEL.CP") in before
+            assert ("VEL_PTP" if statements[n].startswith("PTP") else "$VEL.CP") in text_before
             calls = (";", "$VEL", "$APO", "BAS", "TRIGGER", "ArcMainNG")
-            after = next(line for line in told[n + 1 :] if not line.startswith(calls))
-            assert not told[n].endswith("C_DIS") or (
-                after.startswith("LIN") and "$APO.CDIS" in before
+            next_move = next(line for line in statements[n + 1 :] if not line.startswith(calls))
+            assert not statements[n].endswith("C_DIS") or (
+                next_move.startswith("LIN") and "$APO.CDIS" in text_before
             )
-            assert after.startswith(
+            assert next_move.startswith(
                 ("PTP", "LIN", "WAIT")
-            )  # outputs and calls come where the robot stands
+            )  # outputs and calls come at a standstill
 
 
 JOB = program(
     LayerStart(0),
     moves("rapid", [[0.0, -90.0, 90.0, 0.0, 60.0, 170.0], [1.25, -89.5, 90.25, 0.1, 60.5, 175.0]], [10.0, 0.8]),
-    DepositOn(0.5), laid(3), DepositOff(0.25), Wait(12.5), WaitInput(3), Call("clean"), LayerStart(1),
-    moves("rapid", [[0.0, -90.0, 90.0, 0.0, 60.0, 177.4]], 1.0, layer=1), DepositOn(), laid(2, 1, speed=7.5), DepositOff(),
+    DepositOn(0.5), linear_bead(3), DepositOff(0.25), Wait(12.5), WaitInput(3), Call("clean"), LayerStart(1),
+    moves("rapid", [[0.0, -90.0, 90.0, 0.0, 60.0, 177.4]], 1.0, layer=1), DepositOn(), linear_bead(2, 1, speed=7.5), DepositOff(),
     name="Job", remarks=('A remark ]]> with "marks": Größe',), deposit_output=3, user_frame=2,
 )  # fmt: skip
 
 
-def beside(of, **more):
-    """The same with two external axes, told as E2 and E3: they tilt by 30 deg, and turn on with every move."""
+def add_positioner(source, **changes):
+    """Return the program with two external axes, written as E2 and E3, that tilt by 30 deg and turn
+    further with every move."""
     count, blocks = 0, []
-    for block in of.blocks:
+    for block in source.blocks:
         if isinstance(block, Moves):
             turned = np.radians(
                 np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25]
@@ -157,7 +160,7 @@ def beside(of, **more):
             )
         blocks.append(block)
     return dataclasses.replace(
-        of,
+        source,
         blocks=tuple(blocks),
         **{
             "name": "dome",
@@ -167,15 +170,15 @@ def beside(of, **more):
             "unit": "3",
             "first_external": 2,
             "station": (0, 0, 20, 0, 0, 0),
-            **more,
+            **changes,
         },
     )
 
 
-def along(of, **more):
-    """The same on a track, told as E1, which goes on by 12.5 mm with every move."""
+def put_on_track(source, **changes):
+    """Return the program on a track, written as E1, that advances by 12.5 mm with every move."""
     count, blocks = 0, []
-    for block in of.blocks:
+    for block in source.blocks:
         if isinstance(block, Moves):
             slid = 12.5 * (count + np.arange(len(block)))[:, None] - 900.125
             count, block = (
@@ -184,7 +187,7 @@ def along(of, **more):
             )
         blocks.append(block)
     return dataclasses.replace(
-        of,
+        source,
         blocks=tuple(blocks),
         **{
             "name": "rail",
@@ -194,15 +197,15 @@ def along(of, **more):
             "unit": "",
             "first_external": 1,
             "station": (1200, 0, 20, 0, 0, 0),
-            **more,
+            **changes,
         },
     )
 
 
-def both(of, **more):
-    """The same on a track as E2, and two axes of a positioner about it, as E3 and E4."""
-    of, count, blocks = beside(of), 0, []
-    for block in of.blocks:
+def put_on_track_with_positioner(source, **changes):
+    """Return the program on a track as E2, with two positioner axes around it as E3 and E4."""
+    source, count, blocks = add_positioner(source), 0, []
+    for block in source.blocks:
         if isinstance(block, Moves):
             slid = 12.5 * (count + np.arange(len(block))) - 900.125
             count, block = (
@@ -211,34 +214,35 @@ def both(of, **more):
             )
         blocks.append(block)
     return dataclasses.replace(
-        of,
+        source,
         blocks=tuple(blocks),
         **{
             "name": "both",
             "continuous": (False,) * 9,
             "max_speed": (*NOMINAL, 2500.0, *np.radians([80.0, 160.0])),
             "external_kinds": ("linear", "rotary", "rotary"),
-            **more,
+            **changes,
         },
     )
 
 
-def lit(of, **more):
-    """The same with the arc lit at the end of a linear move onto each bead, by schedules 3, 4 and so on."""
-    blocks, schedule = list(of.blocks), 3
-    for n in range(len(blocks) - 2, -1, -1):  # from behind, for more blocks come
+def light_arc(source, **changes):
+    """Return the program with the arc lit at the end of a linear move onto each bead, by schedules
+    3, 4 and so on."""
+    blocks, schedule = list(source.blocks), 3
+    for n in range(len(blocks) - 2, -1, -1):  # backwards, because blocks are inserted
         if isinstance(blocks[n], DepositOn):
-            first, before = blocks[n + 1], blocks[n - 1]
+            bead_moves, approach = blocks[n + 1], blocks[n - 1]
             onto = moves(
                 "rapid",
-                np.degrees(before.joints[-1:]) + 0.01,
+                np.degrees(approach.joints[-1:]) + 0.01,
                 0.2,
-                before.layer,
-                before.bead,
+                approach.layer,
+                approach.bead,
                 100.0,
                 interpolation="linear",
-                position=first.position[:1] - [1.5, 0.0, 0.0],
-                rotation=first.rotation[:1],
+                position=bead_moves.position[:1] - [1.5, 0.0, 0.0],
+                rotation=bead_moves.rotation[:1],
             )
             blocks.insert(n, onto)
     for n, block in enumerate(blocks):
@@ -246,30 +250,30 @@ def lit(of, **more):
             blocks[n] = dataclasses.replace(block, schedule=schedule)
         if isinstance(block, DepositOff):
             blocks[n], schedule = DepositOff(0.0, schedule), schedule + 1
-    return dataclasses.replace(of, blocks=tuple(blocks), **{"name": "arc", **more})
+    return dataclasses.replace(source, blocks=tuple(blocks), **{"name": "arc", **changes})
 
 
-def early(of, ahead=0.12, **more):
-    """The same with the deposit switched on the moves themselves."""
+def switch_on_moves(source, lead=0.12, **changes):
+    """Return the program with the deposit switched on the moves themselves."""
     blocks = [
-        dataclasses.replace(block, lead=0.0, ahead=ahead)
+        dataclasses.replace(block, lead=0.0, ahead=lead)
         if isinstance(block, (DepositOn, DepositOff))
         else block
-        for block in of.blocks
+        for block in source.blocks
     ]
-    return dataclasses.replace(of, blocks=tuple(blocks), **{"name": "early", **more})
+    return dataclasses.replace(source, blocks=tuple(blocks), **{"name": "early", **changes})
 
 
 GOLDENS = {
-    "trigger": early(JOB),
-    "triggers": early(JOB, 0.0, max_points=5, name="earlies"),
-    "arc": lit(JOB),
-    "arcparts": lit(JOB, max_points=5, blend=50, name="arcs"),
+    "trigger": switch_on_moves(JOB),
+    "triggers": switch_on_moves(JOB, 0.0, max_points=5, name="earlies"),
+    "arc": light_arc(JOB),
+    "arcparts": light_arc(JOB, max_points=5, blend=50, name="arcs"),
     "whole": JOB,
     "parts": dataclasses.replace(JOB, max_points=5, blend=50, name="cup"),
-    "positioner": beside(JOB),
-    "track": along(JOB),
-    "both": both(JOB),
+    "positioner": add_positioner(JOB),
+    "track": put_on_track(JOB),
+    "both": put_on_track_with_positioner(JOB),
 }
 
 
@@ -282,34 +286,39 @@ def test_golden_modules_to_the_byte(root, name):
 
 
 def test_a_track_carries_the_robot_and_the_base_stands():
-    of = along(JOB)
-    read, joints = kuka.read(kuka.write(of)), np.concatenate([moves.joints for moves in of.moves])
+    source = put_on_track(JOB)
+    readback, joints = (
+        kuka.read(kuka.write(source)),
+        np.concatenate([moves.joints for moves in source.moves]),
+    )
     assert (
-        np.array_equal(read.joints[:, 6], joints[:, 6])
-        and np.isnan(read.joints[read.linear, :6]).all()
+        np.array_equal(readback.joints[:, 6], joints[:, 6])
+        and np.isnan(readback.joints[readback.linear, :6]).all()
     )
     np.testing.assert_allclose(
-        read.joints[~read.linear, :6], joints[~read.linear, :6], rtol=0.0, atol=1e-6
+        readback.joints[~readback.linear, :6], joints[~readback.linear, :6], rtol=0.0, atol=1e-6
     )
-    assert (read.unit, read.first_external, read.linear_digits) == ("", 1, 0.00005)
-    text = kuka.write(of)["rail.src"].decode()
+    assert (readback.unit, readback.first_external, readback.linear_digits) == ("", 1, 0.00005)
+    text = kuka.write(source)["rail.src"].decode()
     assert "EK(" not in text and "E1 is the track in mm" in text and "$VEL_EXTAX[1]=100" in text
     slid = [float(value) for value in re.findall(r"(?:PTP|LIN) \{.*?E1 (-?[\d.]+)", text)]
     assert np.allclose(np.diff(slid), 12.5) and slid[0] == -900.125
-    refusal(along(JOB, unit="2"), code="UNSUPPORTED_AXES", where="program.axes.unit")
-    refusal(along(JOB, first_external=7), code="UNSUPPORTED_AXES", where="program.axes.first")
+    refusal(put_on_track(JOB, unit="2"), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    refusal(
+        put_on_track(JOB, first_external=7), code="UNSUPPORTED_AXES", where="program.axes.first"
+    )
 
 
 def test_a_track_and_a_positioner_are_told_together():
-    of = both(JOB)
-    files = kuka.write(of)
-    read, joints = kuka.read(files), np.concatenate([moves.joints for moves in of.moves])
+    source = put_on_track_with_positioner(JOB)
+    files = kuka.write(source)
+    readback, joints = kuka.read(files), np.concatenate([moves.joints for moves in source.moves])
     assert (
-        np.array_equal(read.joints[:, 6], joints[:, 6])
-        and np.isnan(read.joints[read.linear, :6]).all()
+        np.array_equal(readback.joints[:, 6], joints[:, 6])
+        and np.isnan(readback.joints[readback.linear, :6]).all()
     )
-    np.testing.assert_allclose(read.joints[:, 7:], joints[:, 7:], rtol=0.0, atol=1e-6)
-    assert (read.unit, read.first_external, read.linear_digits) == ("3", 2, 0.00005)
+    np.testing.assert_allclose(readback.joints[:, 7:], joints[:, 7:], rtol=0.0, atol=1e-6)
+    assert (readback.unit, readback.first_external, readback.linear_digits) == ("3", 2, 0.00005)
     text = files["both.src"].decode()
     assert (
         "EK(MACHINE_DEF[3].ROOT" in text
@@ -324,17 +333,21 @@ def test_a_track_and_a_positioner_are_told_together():
                 ).encode()
             }
         )
-    refusal(both(JOB, unit=""), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    refusal(
+        put_on_track_with_positioner(JOB, unit=""),
+        code="UNSUPPORTED_AXES",
+        where="program.axes.unit",
+    )
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_random_programs_come_back_to_their_digits(random_application, seed):
-    of = random_application(seed, "cartesian", "tool-on-robot", max_points=60)
-    of = dataclasses.replace(
-        of,
+    source = random_application(seed, "cartesian", "tool-on-robot", max_points=60)
+    source = dataclasses.replace(
+        source,
         tool_frame=4,
         blocks=tuple(
-            # rapids that whole percents can say
+            # rapids whose speed a whole percentage can express
             dataclasses.replace(
                 b,
                 joints=np.cumsum(np.full(b.joints.shape, 0.1), axis=0) + 0.01 * n,
@@ -342,57 +355,64 @@ def test_random_programs_come_back_to_their_digits(random_application, seed):
             )
             if isinstance(b, Moves) and b.kind == "rapid"
             else b
-            for n, b in enumerate(of.blocks)
+            for n, b in enumerate(source.blocks)
         ),
     )
-    of = dataclasses.replace(of, max_speed=(40.0,) * 6)
-    files = kuka.write(of)
+    source = dataclasses.replace(source, max_speed=(40.0,) * 6)
+    files = kuka.write(source)
     assert_modules(files)
-    read, run = kuka.read(files), list(of.moves)
-    straight = np.concatenate([np.full(len(each), each.interpolation == "linear") for each in run])
-    np.testing.assert_array_equal(read.linear, straight)
-    joints = np.concatenate([each.joints for each in run])
-    np.testing.assert_allclose(
-        read.joints[~straight], joints[~straight], rtol=0.0, atol=read.digits + 1e-12
+    readback, run = kuka.read(files), list(source.moves)
+    straight = np.concatenate(
+        [np.full(len(moves_), moves_.interpolation == "linear") for moves_ in run]
     )
-    place, turn = (
-        np.concatenate([getattr(each, name) for each in run])[straight]
+    np.testing.assert_array_equal(readback.linear, straight)
+    joints = np.concatenate([moves_.joints for moves_ in run])
+    np.testing.assert_allclose(
+        readback.joints[~straight], joints[~straight], rtol=0.0, atol=readback.digits + 1e-12
+    )
+    positions, turn = (
+        np.concatenate([getattr(moves_, name) for moves_ in run])[straight]
         for name in ("position", "rotation")
     )
-    np.testing.assert_allclose(read.position[straight], place, rtol=0.0, atol=5.01e-4)
-    np.testing.assert_allclose(read.rotation[straight], turn, rtol=0.0, atol=4e-6)
+    np.testing.assert_allclose(readback.position[straight], positions, rtol=0.0, atol=5.01e-4)
+    np.testing.assert_allclose(readback.rotation[straight], turn, rtol=0.0, atol=4e-6)
     np.testing.assert_allclose(
-        read.speed[straight], np.concatenate([each.speed for each in run])[straight], atol=5.1e-4
+        readback.speed[straight],
+        np.concatenate([moves_.speed for moves_ in run])[straight],
+        atol=5.1e-4,
     )
-    np.testing.assert_array_equal(read.deposit, straight)
+    np.testing.assert_array_equal(readback.deposit, straight)
     assert (
-        set(read.user_frame) == {of.user_frame}
-        and set(read.tool_frame) == {4}
-        and read.share[0] == 0.1
+        set(readback.user_frame) == {source.user_frame}
+        and set(readback.tool_frame) == {4}
+        and readback.share[0] == 0.1
     )
 
 
 def test_parts_are_the_program_hold_whole_beads_and_their_sum_is_told():
-    whole, files = (
+    complete, files = (
         kuka.read(kuka.write(beads(3, 20, layers=2))),
         kuka.write(beads(3, 20, layers=2, max_points=50)),
     )
     assert_modules(files)
     # each file ends with a standstill of no time
-    whole, cut = (
+    complete, cut = (
         dataclasses.replace(
-            read, events=tuple(e for e in read.events if (e.kind, e.value) != ("wait", (0.0,)))
+            readback,
+            events=tuple(e for e in readback.events if (e.kind, e.value) != ("wait", (0.0,))),
         )
-        for read in (whole, kuka.read(files))
+        for readback in (complete, kuka.read(files))
     )
-    for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
+    for field in (
+        candidate for candidate in dataclasses.fields(complete) if candidate.name != "lines"
+    ):
         if (
             field.name == "rotation"
-        ):  # sines may differ in their last bit by where they stand in memory
-            np.testing.assert_allclose(cut.rotation, whole.rotation, rtol=0.0, atol=1e-15)
+        ):  # sines may differ in their last bit, depending on their address in memory
+            np.testing.assert_allclose(cut.rotation, complete.rotation, rtol=0.0, atol=1e-15)
         else:
             np.testing.assert_array_equal(
-                getattr(cut, field.name), getattr(whole, field.name), field.name
+                getattr(cut, field.name), getattr(complete, field.name), field.name
             )
     total = sum(len(content) for name, content in files.items() if name != "part.src")
     assert lines(files, "part.src")[-4:] == [
@@ -418,13 +438,16 @@ def test_a_dry_run_moves_the_same_and_switches_nothing():
 
 
 def test_speeds_and_corners():
-    told = lines(kuka.write(JOB), "Job.src")
+    statements = lines(kuka.write(JOB), "Job.src")
     # axis 6 turns by 5 deg in 0.8 s, of 615 deg/s; then axis 2 by 90.3 in 1 s, of 156
-    assert [line for line in told if "VEL_PTP" in line] == [
+    assert [line for line in statements if "VEL_PTP" in line] == [
         f"BAS(#VEL_PTP,{share})" for share in (10, 1, 58)
     ]
-    assert [line for line in told if "VEL.CP" in line] == ["$VEL.CP=0.006000", "$VEL.CP=0.007500"]
-    assert [line for line in told if "CDIS" in line] == [
+    assert [line for line in statements if "VEL.CP" in line] == [
+        "$VEL.CP=0.006000",
+        "$VEL.CP=0.007500",
+    ]
+    assert [line for line in statements if "CDIS" in line] == [
         "$APO.CDIS=0.750",
         "$APO.CDIS=0.937",
     ]  # half of 0.25 s
@@ -441,24 +464,24 @@ def test_speeds_and_corners():
     assert "0.449 %" in refusal(slow, code="JOINT_SPEED")
     short = program(
         moves("rapid", np.zeros(6)), moves("rapid", [0, 0, 0.03, 0, 0, 0], 0.05)
-    )  # 0.385 % for the least time
+    )  # 0.385 % for the shortest time
     assert [line for line in lines(kuka.write(short), "part.src") if "VEL_PTP" in line] == [
         f"BAS(#VEL_PTP,{share})" for share in (10, 1)
     ]
     for speed in (0.004, 1e6, np.nan):
         refusal(
-            program(moves("rapid", np.zeros(6)), laid(3, 2, 1, speed)),
+            program(moves("rapid", np.zeros(6)), linear_bead(3, 2, 1, speed)),
             code="MOVE_SPEED",
             where="layer 2 bead 1",
         )
 
 
 def test_frames_are_told_as_the_pendant_takes_them():
-    told = lines(kuka.write(JOB), "Job.src")
-    assert "BAS(#BASE,2)" in told and "BAS(#TOOL,1)" in told
+    statements = lines(kuka.write(JOB), "Job.src")
+    assert "BAS(#BASE,2)" in statements and "BAS(#TOOL,1)" in statements
     values = {
         line.split()[1]: [float(value) for value in line.split()[3::2]]
-        for line in told
+        for line in statements
         if line[6:9] == " X "
     }
     np.testing.assert_allclose(values["BASE"], [900.0, 0.0, 310.5, 90.0, 0.0, 0.0])
@@ -478,14 +501,14 @@ def test_names_the_controller_refuses(name, why, proposal):
 def test_no_module_has_the_name_of_what_it_declares_or_uses():
     for name in ("WDAT3", "wdatoff4", "WSEAM", "ArcMainNG"):
         assert "variable" in refusal(
-            dataclasses.replace(lit(JOB), name=name), code="PROGRAM_NAME", where="name"
+            dataclasses.replace(light_arc(JOB), name=name), code="PROGRAM_NAME", where="name"
         )
-        kuka.write(dataclasses.replace(JOB, name=name))  # which uses none of it
-    told = dataclasses.replace(
+        kuka.write(dataclasses.replace(JOB, name=name))  # this program uses none of it
+    changed = dataclasses.replace(
         JOB, blocks=(JOB.blocks[0], Schedule(3), *JOB.blocks[1:]), schedule_output=20
     )
-    refusal(dataclasses.replace(told, name="AM_schedule"), code="PROGRAM_NAME", where="name")
-    called = dataclasses.replace(told, blocks=(*told.blocks, Call("am_schedule")))
+    refusal(dataclasses.replace(changed, name="AM_schedule"), code="PROGRAM_NAME", where="name")
+    called = dataclasses.replace(changed, blocks=(*changed.blocks, Call("am_schedule")))
     refusal(called, code="PROGRAM_NAME", where="process.between_layers.call")
 
 
@@ -520,11 +543,11 @@ def test_what_cannot_be_said_is_refused():
         )
     refusal(program(moves("rapid", np.ones(6)), WaitBelow(1, 0.5, 0, 0)), code="NO_ANALOGUE_INPUT")
     refusal(
-        program(moves("rapid", np.ones(6)), dataclasses.replace(laid(2), wire=np.ones(2))),
+        program(moves("rapid", np.ones(6)), dataclasses.replace(linear_bead(2), wire=np.ones(2))),
         code="NO_WIRE_OUTPUT",
     )
     refusal(
-        program(moves("rapid", np.ones(6)), dataclasses.replace(laid(2), position=None)),
+        program(moves("rapid", np.ones(6)), dataclasses.replace(linear_bead(2), position=None)),
         code="NO_POSITIONS",
     )
     refusal(program(LayerStart(0)), code="NOTHING_TO_WRITE")
@@ -539,32 +562,35 @@ def test_what_cannot_be_said_is_refused():
 
 
 def test_axes_beside_the_robot():
-    read, run = kuka.read(kuka.write(beside(JOB))), beside(JOB).moves
+    readback, run = kuka.read(kuka.write(add_positioner(JOB))), add_positioner(JOB).moves
     joints = np.concatenate([moves.joints for moves in run])
-    np.testing.assert_allclose(read.joints[:, 6:], joints[:, 6:], rtol=0.0, atol=1e-6)
-    assert (read.unit, read.first_external) == ("3", 2) and np.isnan(
-        read.joints[read.linear, :6]
+    np.testing.assert_allclose(readback.joints[:, 6:], joints[:, 6:], rtol=0.0, atol=1e-6)
+    assert (readback.unit, readback.first_external) == ("3", 2) and np.isnan(
+        readback.joints[readback.linear, :6]
     ).all()
-    told = lines(kuka.write(beside(JOB)), "dome.src")
+    statements = lines(kuka.write(add_positioner(JOB)), "dome.src")
     # 10 deg of 160 deg/s in 0.8 s
-    assert [line for line in told if "VEL_PTP" in line] == [
+    assert [line for line in statements if "VEL_PTP" in line] == [
         f"BAS(#VEL_PTP,{share})" for share in (10, 8, 58)
     ]
-    assert [line for line in told if "EXTAX[3]" in line] == [
+    assert [line for line in statements if "EXTAX[3]" in line] == [
         f"$VEL_EXTAX[3]={share}" for share in (10, 8, 100, 58, 100)
     ]
-    refusal(beside(JOB, first_external=6), code="UNSUPPORTED_AXES", where="program.axes.first")
-    for unit in ("", "1", "STN1", "17"):
-        refusal(beside(JOB, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
     refusal(
-        dataclasses.replace(beside(JOB), external_kinds=()),
+        add_positioner(JOB, first_external=6), code="UNSUPPORTED_AXES", where="program.axes.first"
+    )
+    for unit in ("", "1", "STN1", "17"):
+        refusal(add_positioner(JOB, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    refusal(
+        dataclasses.replace(add_positioner(JOB), external_kinds=()),
         code="UNSUPPORTED_AXES",
         where="program.post",
     )
 
 
 def _refused_beside(mechanism):
-    """What a program is refused with for the joint speeds of a mechanism's file, which carries the part."""
+    """Return the refusal of a program for the joint speeds in the file of a mechanism that carries
+    the part."""
     cell = cells.resolve(
         CellParameters(
             machine="kuka-kr8-r2100-2-arc-hw",
@@ -574,21 +600,21 @@ def _refused_beside(mechanism):
         ),
         np.eye(4),
     )
-    made = build_header(
+    header = build_header(
         cell,
         ProgramParameters(post="kuka", motion="cartesian"),
         catalogue.controller("kuka"),
         "dome",
     )
     return refusal(
-        dataclasses.replace(made, blocks=beside(JOB).blocks),
+        dataclasses.replace(header, blocks=add_positioner(JOB).blocks),
         code="NO_JOINT_SPEED",
         where="cell.external",
     )
 
 
 def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
-    """That of the robot, or of the positioner or track beside it."""
+    """The message names the file of the robot, or of its positioner or track."""
     slow, told = (
         (*NOMINAL[:5], math.inf),
         json.loads((MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8")),
@@ -604,13 +630,17 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
     for lacking, where in ((0, "cell.machine"), (1, "cell.external")):
         speeds = (*slow, 1.0, 1.0) if lacking == 0 else (*NOMINAL, 1.0, math.inf)
         message = refusal(
-            beside(JOB, max_speed=speeds, axis_machines=("a robot",) * 6 + ("a table",) * 2),
+            add_positioner(
+                JOB, max_speed=speeds, axis_machines=("a robot",) * 6 + ("a table",) * 2
+            ),
             code="NO_JOINT_SPEED",
             where=where,
         )
         assert f"file of {('a robot', 'a table')[lacking]} lacks" in message
         message = refusal(
-            beside(JOB, max_speed=speeds, of_urdf=(lacking == 0,) * 6 + (lacking == 1,) * 2),
+            add_positioner(
+                JOB, max_speed=speeds, of_urdf=(lacking == 0,) * 6 + (lacking == 1,) * 2
+            ),
             code="NO_JOINT_SPEED",
             where=where,
         )
@@ -634,31 +664,36 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
 
 
 def test_the_deposit_is_switched_on_the_moves_themselves():
-    told = lines(kuka.write(early(JOB)), "early.src")
-    places = [n for n, line in enumerate(told) if line.startswith("TRIGGER")]
-    assert [told[n].partition("DELAY=")[2] for n in places] == [
+    statements = lines(kuka.write(switch_on_moves(JOB)), "early.src")
+    trigger_lines = [n for n, line in enumerate(statements) if line.startswith("TRIGGER")]
+    assert [statements[n].partition("DELAY=")[2] for n in trigger_lines] == [
         f"-120 DO $OUT[3]={word}" for word in ("TRUE", "FALSE", "TRUE", "FALSE")
     ]
-    # right in front of a move that stops, the last one onto a bead or of it, and no wait or output elsewhere
-    assert [told[n + 1].split()[0] for n in places] == ["PTP", "LIN", "PTP", "LIN"]
-    assert all(told[n + 1].endswith("}") for n in places) and not [
-        line for line in told if line.startswith("$OUT")
+    # directly before a move with a stop, the last one onto a bead or of it; waits and outputs are
+    # nowhere else
+    assert [statements[n + 1].split()[0] for n in trigger_lines] == ["PTP", "LIN", "PTP", "LIN"]
+    assert all(statements[n + 1].endswith("}") for n in trigger_lines) and not [
+        line for line in statements if line.startswith("$OUT")
     ]
-    read = kuka.read(kuka.write(early(JOB)))
+    readback = kuka.read(kuka.write(switch_on_moves(JOB)))
     switched = [
-        (e.row, e.kind, e.value, round(e.ahead, 9)) for e in read.events if e.kind in ("on", "off")
+        (e.row, e.kind, e.value, round(e.ahead, 9))
+        for e in readback.events
+        if e.kind in ("on", "off")
     ]
     assert switched == [
         (row, kind, (3.0, "$OUT"), 0.12)
         for row, kind in ((2, "on"), (5, "off"), (6, "on"), (8, "off"))
     ]
-    assert read.deposit.tolist() == kuka.read(kuka.write(JOB)).deposit.tolist()
+    assert readback.deposit.tolist() == kuka.read(kuka.write(JOB)).deposit.tolist()
     assert (
         "TRIGGER"
-        not in kuka.write(dataclasses.replace(early(JOB), dry_run=True))["early.src"].decode()
+        not in kuka.write(dataclasses.replace(switch_on_moves(JOB), dry_run=True))[
+            "early.src"
+        ].decode()
     )
     refusal(
-        early(JOB, 0.26), code="TRIGGER_LEAD", where="layer 0 bead 0"
+        switch_on_moves(JOB, 0.26), code="TRIGGER_LEAD", where="layer 0 bead 0"
     )  # the last move of the bead takes 0.25 s
 
 
@@ -692,28 +727,30 @@ def by_hand(old="", new=""):
 
 
 def test_a_module_by_hand():
-    read = kuka.read(by_hand())
-    np.testing.assert_allclose(np.degrees(read.joints[0]), [0.5, -90.0, 90.0, 0.0, -10.0, 200.25])
-    assert np.isnan(read.joints[1:]).all() and read.position[1:].tolist() == [
+    readback = kuka.read(by_hand())
+    np.testing.assert_allclose(
+        np.degrees(readback.joints[0]), [0.5, -90.0, 90.0, 0.0, -10.0, 200.25]
+    )
+    assert np.isnan(readback.joints[1:]).all() and readback.position[1:].tolist() == [
         [10.0, 0.25, 5.0],
         [20.5, 0.25, 5.0],
     ]
     turned = Rotation.from_euler(
         "ZYX", [[30.0, 20.0, 10.0], [-170.0, 0.0, 179.5]], degrees=True
     ).as_matrix()
-    np.testing.assert_allclose(read.rotation[1:], turned, atol=1e-15)
-    assert read.deposit.tolist() == read.linear.tolist() == [False, True, True]
-    assert read.stops.tolist() == [True, False, True] and read.rounding[1] == 0.5
-    np.testing.assert_allclose(read.speed, [np.nan, 30.5, 30.5])
-    np.testing.assert_array_equal(read.share, [0.25, np.nan, np.nan])
-    assert [(event.row, event.kind, *event.value) for event in read.events] == [
+    np.testing.assert_allclose(readback.rotation[1:], turned, atol=1e-15)
+    assert readback.deposit.tolist() == readback.linear.tolist() == [False, True, True]
+    assert readback.stops.tolist() == [True, False, True] and readback.rounding[1] == 0.5
+    np.testing.assert_allclose(readback.speed, [np.nan, 30.5, 30.5])
+    np.testing.assert_array_equal(readback.share, [0.25, np.nan, np.nan])
+    assert [(event.row, event.kind, *event.value) for event in readback.events] == [
         (1, "wait", 0.5),
         (1, "on", 7.0, "$OUT"),
         (3, "input", 4.0),
         (3, "off", 7.0, "$OUT"),
         (3, "call", "GRIPPER_OPEN"),
     ]
-    assert read.user_frame.tolist() == [3.0] * 3 and read.tool_frame.tolist() == [5.0] * 3
+    assert readback.user_frame.tolist() == [3.0] * 3 and readback.tool_frame.tolist() == [5.0] * 3
 
 
 @pytest.mark.parametrize(("old", "new", "why"), [

@@ -22,7 +22,7 @@ from freecad_am.posts import catalogue
 from freecad_am.posts.kuka import post as kuka
 from freecad_am.verify import verify
 from tests.posts.planned_jobs import CHORD_ERROR, HEIGHT, PROCESS, SETUPS, planned
-from tests.posts.test_kuka import JOB, lit
+from tests.posts.test_kuka import JOB, light_arc
 from tests.programs import build
 
 ARC = ProgramParameters(post="kuka", motion="cartesian", schedule=ScheduleParameters(by="arc"))
@@ -248,7 +248,7 @@ def test_a_program_that_begins_at_a_bead_is_refused():
 
 
 def test_the_head_tells_the_speeds_that_belong_to_weld_data():
-    text = kuka.write(lit(JOB))["arc.src"].decode()
+    text = kuka.write(light_arc(JOB))["arc.src"].decode()
     assert "; WDAT3, WDATOFF3: $VEL.CP is 0.006000 m/s\r\n" in text
     assert "; WDAT4, WDATOFF4: $VEL.CP is 0.007500 m/s\r\n" in text
     assert catalogue.load("kuka").NO_SCHEDULE == {}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every post for robots x motion x what moves part and robot: written, read back and damaged elsewhere (WAYS), or refused
-with a reason before anything is planned."""
+"""Every post for robots x motion x set-up: written, and read back and damaged elsewhere (WAYS), or
+rejected with a reason before planning."""
 
 import dataclasses
 import itertools
@@ -18,7 +18,7 @@ from tests.posts.planned_jobs import PULSES, WAYS
 
 pytestmark = pytest.mark.any_version
 
-ROBOTS = {  # one that reads each post
+ROBOTS = {  # a robot for each post
     "fanuc": "fanuc-arcmate120ic",
     "staubli": "staubli-rx60bl",
     "ur": "ur-ur10e",
@@ -38,8 +38,8 @@ SETUPS = {
 ON_TABLES = (
     "siemens",
     "linuxcnc",
-)  # posts of five-axis machines, which have a file of tests of their own
-# what is refused, by its code and a word of its reason
+)  # posts of five-axis machines, which have a test file of their own
+# refused combinations, by code and a word of the reason
 NOT_WRITTEN, BOTH = ("UNSUPPORTED_AXES", "not written with a"), "track and positioner"
 RAIL = {
     "fanuc": "depending on the setup of the rail",
@@ -77,14 +77,15 @@ REFUSED = (
 
 
 def refusal(post, motion, setup):
-    """The error that a program of this kind ends with before it is planned, None of one that is written."""
+    """Return the error that a program of this kind ends with before planning, None if it is
+    written."""
     assert post in ROBOTS, f"name a robot of {post} in ROBOTS, see docs/contributing/post.md"
     cell = cells.resolve(
         CellParameters(machine=ROBOTS[post], mount="part", **SETUPS[setup]),
         np.eye(4),
         "developable",
     )
-    if post == "yaskawa":  # what only a user's machine file tells
+    if post == "yaskawa":  # only a user's machine file states it
         cell = dataclasses.replace(
             cell,
             machine=dataclasses.replace(
@@ -107,7 +108,7 @@ OF_ROBOTS = [post for post in catalogue.NAMES if post not in ON_TABLES]
 
 def test_every_refusal_is_of_a_cell_that_is_looked_at():
     assert set(REFUSED) <= set(itertools.product(OF_ROBOTS, ("joint", "cartesian"), SETUPS))
-    silent = set(catalogue.NAMES) - {way[0] for way in WAYS}
+    silent = set(catalogue.NAMES) - {variant[0] for variant in WAYS}
     assert not silent, f"{silent} write nothing: add their motions to WAYS of planned_jobs.py"
 
 
@@ -118,12 +119,12 @@ def test_written_or_refused_with_its_reason(cell):
     post, motion, setup = cell
     error = refusal(*cell)
     if error is None:
-        way = (post, motion, "time", f"{post} {setup}")
-        assert way in WAYS, f"add {way} to WAYS and its cell to SETUPS of planned_jobs.py"
+        variant = (post, motion, "time", f"{post} {setup}")
+        assert variant in WAYS, f"add {variant} to WAYS and its cell to SETUPS of planned_jobs.py"
         assert cell not in REFUSED
         return
     assert (post, motion, "time", f"{post} {setup}") not in WAYS
     code, word = REFUSED[cell]
     assert (
         error.code == code and word in error.message and "; " in error.message
-    )  # a reason, and what to do
+    )  # a reason, and the remedy

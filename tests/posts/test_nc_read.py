@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Five-axis programs by hand read back, and what is not understood is refused at its place."""
+"""Five-axis programs written by hand are read back, and the reader rejects statements that it does
+not understand at their line."""
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from freecad_am.posts.siemens import post as siemens
 
 pytestmark = pytest.mark.any_version
 
-# as others write them: short numbers, words in another order, lower case, remarks behind blocks
+# in another style: short numbers, words in another order, lower case, remarks after blocks
 MAIN = """; by hand
 N10 G17 G40 G710 G90 G54 D2
 N20 PART_1 ; the path
@@ -81,67 +82,72 @@ def ngc(old="", new=""):
 
 
 def test_a_sinumerik_program_by_hand():
-    read = siemens.read(mpf())
-    shown = read.joints * [1, 1, 1, 180 / np.pi, 180 / np.pi]
+    readback = siemens.read(mpf())
+    joints_mm_deg = readback.joints * [1, 1, 1, 180 / np.pi, 180 / np.pi]
     np.testing.assert_allclose(
-        shown[[0, 1, 3]],
+        joints_mm_deg[[0, 1, 3]],
         [[10, 0.25, 5, -12.5, 45], [13, 4.25, 5, -12.5, 50], [14, 5, 5, -10, 51.25]],
         atol=1e-12,
     )
     assert (
-        np.isnan(shown[2]).all()
-        and np.isnan(np.hstack([read.position, read.direction])[[0, 1, 3]]).all()
+        np.isnan(joints_mm_deg[2]).all()
+        and np.isnan(np.hstack([readback.position, readback.direction])[[0, 1, 3]]).all()
     )
-    np.testing.assert_allclose(read.position[2], [1.5, 2.0, -3.125])
-    np.testing.assert_allclose(read.direction[2], [0.0, 0.6, 0.8])
-    np.testing.assert_allclose(read.duration, [10.0, 5.0, np.nan, 0.5])  # 5 mm at 60 mm/min
-    np.testing.assert_allclose(read.speed, [np.nan, np.nan, 5.0, np.nan])
-    assert read.linear.tolist() == [False, False, True, False] and read.stops.tolist() == [
+    np.testing.assert_allclose(readback.position[2], [1.5, 2.0, -3.125])
+    np.testing.assert_allclose(readback.direction[2], [0.0, 0.6, 0.8])
+    np.testing.assert_allclose(readback.duration, [10.0, 5.0, np.nan, 0.5])  # 5 mm at 60 mm/min
+    np.testing.assert_allclose(readback.speed, [np.nan, np.nan, 5.0, np.nan])
+    assert readback.linear.tolist() == [False, False, True, False] and readback.stops.tolist() == [
         False,
         False,
         False,
         True,
     ]
     assert (
-        read.user_frame.tolist()[2] == 1.0
-        and np.isnan(read.user_frame[[0, 1, 3]]).all()
-        and read.rounding is None
+        readback.user_frame.tolist()[2] == 1.0
+        and np.isnan(readback.user_frame[[0, 1, 3]]).all()
+        and readback.rounding is None
     )
-    assert set(read.tool_frame.tolist()) == {2.0}
-    assert [(event.row, event.kind, *event.value) for event in read.events] == [
+    assert set(readback.tool_frame.tolist()) == {2.0}
+    assert [(event.row, event.kind, *event.value) for event in readback.events] == [
         (2, "on", 2.0, "$A_OUT[2]=1"), (2, "wait", 0.5), (3, "off", 2.0, "$A_OUT[2]=0"), (4, "input", 4.0),
         (4, "call", "CLEANING"),
     ]  # fmt: skip
-    assert read.deposit.tolist() == [False, False, True, False] and read.shorter_way.tolist() == [
-        False
-    ] * 4 + [True]
-    assert (read.linear_digits, np.degrees(read.digits), read.direction_digits) == pytest.approx(
-        (0.5, 0.5, 0.5)
-    )
+    assert readback.deposit.tolist() == [
+        False,
+        False,
+        True,
+        False,
+    ] and readback.shorter_way.tolist() == [False] * 4 + [True]
+    assert (
+        readback.linear_digits,
+        np.degrees(readback.digits),
+        readback.direction_digits,
+    ) == pytest.approx((0.5, 0.5, 0.5))
 
 
 def test_a_linuxcnc_program_by_hand():
-    read = linuxcnc.read(ngc())
-    shown = read.joints * [1, 1, 1, 180 / np.pi, 180 / np.pi]
-    np.testing.assert_allclose(shown[:3, 4], [45, 405.5, 400.5])
-    np.testing.assert_allclose(shown[3], [np.nan, np.nan, np.nan, -10, 400])
-    np.testing.assert_allclose(shown[4], [14, 5, 5, -10, 401.25])
-    np.testing.assert_allclose(read.position[3], [1.5, 2.0, -3.125])
-    # 5 mm at 60 mm/min; 5 deg at 10 deg/min where the linear axes stand still
-    np.testing.assert_allclose(read.duration, [10.0, 5.0, 30.0, np.nan, 0.5])
-    np.testing.assert_allclose(read.speed, [np.nan] * 3 + [5.0, np.nan])
-    assert read.deposit.tolist() == [False] * 3 + [True, False] and read.direction is None
-    assert read.linear.tolist() == [False] * 3 + [True, False]
-    # what changes the kinematics waits for the end of the motion; so does the end
-    assert read.stops.tolist() == [False, False, True, True, False] and set(
-        read.rounding[:2].tolist()
+    readback = linuxcnc.read(ngc())
+    joints_mm_deg = readback.joints * [1, 1, 1, 180 / np.pi, 180 / np.pi]
+    np.testing.assert_allclose(joints_mm_deg[:3, 4], [45, 405.5, 400.5])
+    np.testing.assert_allclose(joints_mm_deg[3], [np.nan, np.nan, np.nan, -10, 400])
+    np.testing.assert_allclose(joints_mm_deg[4], [14, 5, 5, -10, 401.25])
+    np.testing.assert_allclose(readback.position[3], [1.5, 2.0, -3.125])
+    # 5 mm at 60 mm/min; 5 deg at 10 deg/min while the linear axes do not move
+    np.testing.assert_allclose(readback.duration, [10.0, 5.0, 30.0, np.nan, 0.5])
+    np.testing.assert_allclose(readback.speed, [np.nan] * 3 + [5.0, np.nan])
+    assert readback.deposit.tolist() == [False] * 3 + [True, False] and readback.direction is None
+    assert readback.linear.tolist() == [False] * 3 + [True, False]
+    # a change of the kinematics waits for the end of the motion, and so does the end
+    assert readback.stops.tolist() == [False, False, True, True, False] and set(
+        readback.rounding[:2].tolist()
     ) == {np.inf}
     assert (
-        read.user_frame[3] == 1.0
-        and read.tool_frame[:4].tolist() == [2.0] * 4
-        and np.isnan(read.tool_frame[4])
+        readback.user_frame[3] == 1.0
+        and readback.tool_frame[:4].tolist() == [2.0] * 4
+        and np.isnan(readback.tool_frame[4])
     )
-    assert [(event.row, event.kind, *event.value) for event in read.events] == [
+    assert [(event.row, event.kind, *event.value) for event in readback.events] == [
         (3, "on", 4.0, "M62 P3"),
         (4, "off", 4.0, "M63 P3"),
         (4, "call", "CLEANING"),
@@ -231,7 +237,7 @@ def test_what_is_not_understood_of_linuxcnc(old, new, where, why):
     assert why in raised.value.message
 
 
-FIRST = {
+FIRST_LINE = {
     siemens: [
         "N1 G17 G40 G710 G90",
         "N2 G500",
@@ -252,7 +258,7 @@ FIRST = {
 }
 
 
-@pytest.mark.parametrize("post", FIRST, ids=["siemens", "linuxcnc"])
+@pytest.mark.parametrize("post", FIRST_LINE, ids=["siemens", "linuxcnc"])
 @pytest.mark.parametrize(("old", "new"), [
     ("G1 X", "X"), ("G1 X", "G0 X"), ("G1 X", "G91 G1 X"), ("G1 X", "G1 G1 G0 X"), ("X1.5", "X1,5"), ("X1.5", "X1E5"),
     ("X1.5", "X1.5X2"), ("X1.5", "X1.5 X2"), ("X1.5", "X--1.5"), ("X1.5", "X"), ("X1.5", "X=AC(1.5)"), ("X1.5", "U1.5"),
@@ -260,7 +266,8 @@ FIRST = {
     ("6.25", "6.25) Z=(3"), ("6.25", "6.2.5"), ("F6", "F6 G9"), ("G1 X", "G9 G1 X"),
 ])  # fmt: skip
 def test_a_block_after_one_alike_is_read_as_strictly(post, old, new, monkeypatch):
-    """Blocks that look like the one before are read at once; what comes out is as without that."""
+    """Blocks of the same shape as the one before are read together, with the same result as one by
+    one."""
 
     def read(*lines):
         end = ["N9 M30"] if post is siemens else ["M2"]
@@ -270,10 +277,10 @@ def test_a_block_after_one_alike_is_read_as_strictly(post, old, new, monkeypatch
         except InputError as error:
             return error.code, error.where, error.message
 
-    lines = [*FIRST[post], FIRST[post][-1].replace("N6", "N7").replace(old, new, 1)]
+    lines = [*FIRST_LINE[post], FIRST_LINE[post][-1].replace("N6", "N7").replace(old, new, 1)]
     assert lines[-1].replace("N7", "N6") != lines[-2]
     quick = read(*lines)
-    monkeypatch.setattr(nc_read.Shape, "of", staticmethod(lambda *given: None))
+    monkeypatch.setattr(nc_read.Shape, "of", staticmethod(lambda *arguments: None))
     slow = read(*lines)
     assert isinstance(quick, tuple) == isinstance(slow, tuple)
     if isinstance(slow, tuple):

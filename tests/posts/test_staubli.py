@@ -21,7 +21,7 @@ from freecad_am.core.program import (
 )
 from freecad_am.posts import catalogue
 from freecad_am.posts.staubli import post as staubli
-from tests.posts.fanuc_programs import with_tool
+from tests.posts.fanuc_programs import put_tool_on_robot
 
 VARIANTS = [
     ("joint", "part-on-robot"),
@@ -132,7 +132,12 @@ def gauge_bead(layer):
 GAUGE = program(
     *gauge_bead(0), *gauge_bead(1), name="gauge", motion="cartesian", max_points=8, blend=50
 )
-GOLDENS = {"joint": JOINT, "gauge": GAUGE, "tool-joint": with_tool(JOINT), "tool": with_tool(GAUGE)}
+GOLDENS = {
+    "joint": JOINT,
+    "gauge": GAUGE,
+    "tool-joint": put_tool_on_robot(JOINT),
+    "tool": put_tool_on_robot(GAUGE),
+}
 
 
 @pytest.mark.parametrize("name", GOLDENS)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""VAL 3 applications read back: everything written comes back to its digits, and what is not understood is refused."""
+"""VAL 3 applications come back from the reader to their digits, and statements that it does not
+understand are rejected."""
 
 import re
 
@@ -17,7 +18,8 @@ HEAD = '\ufeff<?xml version="1.0" encoding="utf-8"?>\n'
 SPACE = "http://www.staubli.com/robotics/VAL3/"
 XSI = 'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
 
-# an independent application by hand, as others write them: short numbers, other names, a program of its own
+# an independent application by hand in another style: short numbers, other names, a program of its
+# own
 PROJECT = f"""{HEAD}<Project xmlns="{SPACE}Project/3">
   <Parameters version="s7.7.2" stackSize="5000" millimeterUnit="true" />
   <Programs>
@@ -100,54 +102,56 @@ STOP = """  resetMotion()
   doExtrude=false"""
 
 
-def by_hand(old="", new="", **more):
+def by_hand(old="", new="", **options):
     files = {
         "hand/hand.pjx": PROJECT, "hand/hand.dtx": DATA, "hand/start.pgx": code("start", START),
         "hand/layer_0001.pgx": code("layer_0001", LAYER), "hand/stop.pgx": code("stop", STOP),
     }  # fmt: skip
     assert not old or sum(old in text for text in files.values())
-    return {file: text.replace(old, new).encode() for file, text in {**files, **more}.items()}
+    return {file: text.replace(old, new).encode() for file, text in {**files, **options}.items()}
 
 
 def test_an_application_by_hand():
-    read = staubli.read(by_hand())
-    shown = np.degrees(read.joints)
+    readback = staubli.read(by_hand())
+    joints_deg = np.degrees(readback.joints)
     np.testing.assert_allclose(
-        shown[[0, 3]],
+        joints_deg[[0, 3]],
         [[0, -30, 120, 0, 90, 0], [1.25, -29.5, 119.75, 0.1, 89.9, -190.5]],
         atol=1e-12,
     )
-    assert np.isnan(shown[1:3]).all() and np.isnan(read.position[[0, 3]]).all()
-    np.testing.assert_array_equal(read.position[1:3], [[10, 0.25, 5], [20.5, 0.5, 5]])
+    assert np.isnan(joints_deg[1:3]).all() and np.isnan(readback.position[[0, 3]]).all()
+    np.testing.assert_array_equal(readback.position[1:3], [[10, 0.25, 5], [20.5, 0.5, 5]])
     turned = Rotation.from_euler("XYZ", [[180, 0, 0], [179, 0.5, -33.25]], degrees=True).as_matrix()
-    np.testing.assert_allclose(read.rotation[1:3], turned, atol=1e-15)
+    np.testing.assert_allclose(readback.rotation[1:3], turned, atol=1e-15)
     np.testing.assert_allclose(
-        read.frame[:3, :3],
+        readback.frame[:3, :3],
         Rotation.from_euler("XYZ", [10, 20, 30], degrees=True).as_matrix(),
         atol=1e-15,
     )
     np.testing.assert_allclose(
-        read.tool[1, :3, :3],
+        readback.tool[1, :3, :3],
         Rotation.from_euler("XYZ", [5, 6, 7], degrees=True).as_matrix(),
         atol=1e-15,
     )
-    assert read.frame[:3, 3].tolist() == [600, 0, -200] and read.tool[2, :3, 3].tolist() == [
+    assert readback.frame[:3, 3].tolist() == [600, 0, -200] and readback.tool[
+        2, :3, 3
+    ].tolist() == [
         1,
         2,
         250,
     ]
-    assert read.deposit.tolist() == read.linear.tolist() == [False, True, True, False]
-    assert read.stops.tolist() == [True, False, True, True] and read.rounding[1] == 0.5
-    assert [(event.row, event.kind, *event.value) for event in read.events] == [
+    assert readback.deposit.tolist() == readback.linear.tolist() == [False, True, True, False]
+    assert readback.stops.tolist() == [True, False, True, True] and readback.rounding[1] == 0.5
+    assert [(event.row, event.kind, *event.value) for event in readback.events] == [
         (1, "on", 1.0, "doExtrude"), (3, "off", 1.0, "doExtrude"), (3, "input", 5.0), (3, "call", "gripper:open"),
         (3, "wait", 2.0),
     ]  # fmt: skip
-    np.testing.assert_array_equal(read.speed, [np.nan, 30.5, 6.0, np.nan])
-    np.testing.assert_array_equal(read.share, [0.2, np.nan, np.nan, 0.2])
-    assert np.degrees(read.digits) == pytest.approx(
+    np.testing.assert_array_equal(readback.speed, [np.nan, 30.5, 6.0, np.nan])
+    np.testing.assert_array_equal(readback.share, [0.2, np.nan, np.nan, 0.2])
+    assert np.degrees(readback.digits) == pytest.approx(
         0.005
-    ) and read.position_digits == pytest.approx(0.005)
-    assert np.isnan(read.duration).all() and read.speed_digits == pytest.approx(0.05)
+    ) and readback.position_digits == pytest.approx(0.005)
+    assert np.isnan(readback.duration).all() and readback.speed_digits == pytest.approx(0.05)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -156,40 +160,43 @@ def test_an_application_by_hand():
 ])  # fmt: skip
 def test_random_programs_come_back(random_application, seed, motion, setup):
     program = random_application(seed, motion, setup, max_points=50 + 40 * (seed % 4))
-    read = staubli.read(staubli.write(program))
+    readback = staubli.read(staubli.write(program))
     deposit, on = [], False
     for block in program.blocks:
         on = isinstance(block, DepositOn) or (on and not isinstance(block, DepositOff))
         deposit += [on] * len(block) if isinstance(block, Moves) else []
-    assert read.deposit.tolist() == deposit
+    assert readback.deposit.tolist() == deposit
     linear = np.array(deposit) & (motion == "cartesian")
     joints, duration, speed = (
         np.concatenate([getattr(run, name) for run in program.moves])
         for name in ("joints", "duration", "speed")
     )
-    assert (np.isfinite(read.speed) == linear).all() and (np.isfinite(read.share) == ~linear).all()
-    assert np.abs(np.degrees(read.joints - joints))[~linear].max() <= 5e-6 + 1e-9
-    assert np.degrees(read.digits) == pytest.approx(5e-6)
+    assert (np.isfinite(readback.speed) == linear).all() and (
+        np.isfinite(readback.share) == ~linear
+    ).all()
+    assert np.abs(np.degrees(readback.joints - joints))[~linear].max() <= 5e-6 + 1e-9
+    assert np.degrees(readback.digits) == pytest.approx(5e-6)
     # the time of a move: its fastest axis at that share of its largest speed
     ends = np.flatnonzero(~linear[1:]) + 1
     start = np.where(
         linear[ends - 1, None],
         np.radians(np.round(np.degrees(joints[ends - 1]), 5)),
-        read.joints[ends - 1],
+        readback.joints[ends - 1],
     )
-    time = (np.abs(read.joints[ends] - start) / np.array(program.max_speed)).max(
+    time = (np.abs(readback.joints[ends] - start) / np.array(program.max_speed)).max(
         axis=1
-    ) / read.share[ends]
-    slow = read.share[ends] > 1.01e-5  # slower than can be written: rapids that hardly move
+    ) / readback.share[ends]
+    # rapids that hardly move would be slower than the smallest written speed
+    slow = readback.share[ends] > 1.01e-5
     assert (
         np.abs(time / duration[ends] - 1.0)[slow].max()
-        <= (5e-8 / read.share[ends][slow]).max() + 1e-9
+        <= (5e-8 / readback.share[ends][slow]).max() + 1e-9
     )
     assert slow.mean() > 0.5
     if motion == "joint":
-        assert read.position is None and read.tool is None and read.frame is None
+        assert readback.position is None and readback.tool is None and readback.frame is None
         return
-    assert np.abs(read.speed - speed)[linear].max() <= 5e-4 + 1e-9
+    assert np.abs(readback.speed - speed)[linear].max() <= 5e-4 + 1e-9
     position, rotation = (
         np.concatenate([getattr(run, name) for run in program.moves])
         for name in ("position", "rotation")
@@ -201,25 +208,25 @@ def test_random_programs_come_back(random_application, seed, motion, setup):
         ).as_matrix(),
         [1.0, 2.0, 105.0],
     )
-    gauge = np.linalg.inv(carried) @ read.tool[linear]
-    seen, turned, other = gauge[:, :3, 3], gauge[:, :3, :3], read.position[linear]
+    gauge = np.linalg.inv(carried) @ readback.tool[linear]
+    positions, turned, flange = gauge[:, :3, 3], gauge[:, :3, :3], readback.position[linear]
     if setup == "tool-on-robot":
-        seen, turned, other = (
-            read.position[linear],
-            read.rotation[linear],
-            read.tool[linear][:, :3, 3] - [1.0, 2.0, 105.0],
+        positions, turned, flange = (
+            readback.position[linear],
+            readback.rotation[linear],
+            readback.tool[linear][:, :3, 3] - [1.0, 2.0, 105.0],
         )
-    assert np.abs(seen - position[linear]).max() <= 5e-5 + 1e-9 and np.abs(other).max() == 0.0
+    assert np.abs(positions - position[linear]).max() <= 5e-5 + 1e-9 and np.abs(flange).max() == 0.0
     angle = np.linalg.norm(
         np.swapaxes(turned, 1, 2) @ rotation[linear] - np.eye(3), axis=(1, 2)
     ) / np.sqrt(2.0)
     assert np.degrees(angle).max() <= 3.0 * 5e-6 + 1e-9
-    assert read.position_digits == pytest.approx(5e-5) and np.degrees(
-        read.rotation_digits
+    assert readback.position_digits == pytest.approx(5e-5) and np.degrees(
+        readback.rotation_digits
     ) == pytest.approx(5e-6)
-    np.testing.assert_allclose(read.frame[:3, 3], [300.25, -20.5, 310.125], atol=1e-12)
+    np.testing.assert_allclose(readback.frame[:3, 3], [300.25, -20.5, 310.125], atol=1e-12)
     wanted = Rotation.from_euler("XYZ", [0.1, -0.2, 3.0]).as_matrix()
-    np.testing.assert_allclose(read.frame[:3, :3], wanted, atol=3e-7)
+    np.testing.assert_allclose(readback.frame[:3, :3], wanted, atol=3e-7)
 
 
 @pytest.mark.parametrize(("old", "new", "where", "why"), [
@@ -280,19 +287,19 @@ def test_what_is_not_understood_is_refused(old, new, where, why):
 
 
 def test_files_that_hide_something_are_refused():
-    for more in (
+    for extra_files in (
         {"hand/more.pgx": code("more", "")},
         {"other/other.pjx": PROJECT},
         {"hand/two.pjx": PROJECT},
     ):
         with pytest.raises(InputError) as raised:
-            staubli.read(by_hand(**more))
+            staubli.read(by_hand(**extra_files))
         assert raised.value.code == "UNREADABLE_PROGRAM"
     entity = by_hand("<Database", '<!DOCTYPE a [<!ENTITY b "c">]><Database')
     with pytest.raises(InputError, match="document type"):
         staubli.read(entity)
     project = next(name for name in entity if name.endswith(".pjx"))
-    with pytest.raises(InputError, match="UTF-8"):  # the same in signs of two bytes
+    with pytest.raises(InputError, match="UTF-8"):  # the same in characters of two bytes
         staubli.read(
             {
                 **entity,
@@ -307,8 +314,10 @@ def test_loading_a_part_while_depositing_is_refused(random_application):
     files = staubli.write(random_application(2, max_points=50))
     name = "Random/Random01/start.pgx"
     text = files[name].decode()
-    last = text.rindex("doDeposit=false")
-    files[name] = (text[:last] + "doDeposit=true" + text[last + len("doDeposit=false") :]).encode()
+    offset = text.rindex("doDeposit=false")
+    files[name] = (
+        text[:offset] + "doDeposit=true" + text[offset + len("doDeposit=false") :]
+    ).encode()
     with pytest.raises(InputError, match="loaded during the deposit"):
         staubli.read(files)
 

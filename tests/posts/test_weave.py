@@ -19,7 +19,7 @@ from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.posts.fanuc_programs import GOLDEN_TABLE
 from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
-from tests.posts.test_yaskawa import GOLDENS, faults
+from tests.posts.test_yaskawa import GOLDENS, find_faults
 from tests.programs import build
 
 pytestmark = pytest.mark.any_version
@@ -161,7 +161,7 @@ def test_golden_programs_to_the_byte(root, assert_listings):
     assert_listings(listing)
     job = catalogue.load("yaskawa").write(add_weave(GOLDENS["linear"], 255))
     assert job == {"WOVEN.JBI": (root / "tests/golden/yaskawa/WOVEN.JBI").read_bytes()}
-    assert list(faults("WOVEN.JBI", job["WOVEN.JBI"])) == []
+    assert list(find_faults("WOVEN.JBI", job["WOVEN.JBI"])) == []
 
 
 @pytest.mark.parametrize("post", SETUPS)

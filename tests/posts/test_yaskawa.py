@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is written for Yaskawa: jobs to the byte, pulses, shares of speed, parts, and what is refused and not read."""
+"""Yaskawa jobs: exact bytes, pulses, speed shares, parts, refusals and unreadable jobs."""
 
 import dataclasses
 import json
@@ -24,40 +24,41 @@ from freecad_am.objects.checks.controllers import check_pulses, written_by
 from freecad_am.posts import own_programs
 from freecad_am.posts.ur import post as ur
 from freecad_am.posts.yaskawa import post as yaskawa
-from tests.posts.fanuc_programs import GOLDEN_JOINT, beads, moves, program, with_tool
+from tests.posts.fanuc_programs import GOLDEN_JOINT, beads, moves, program, put_tool_on_robot
 
 PULSES = (1435.3, 1308.25, -1313.5, 980.0, 876.8125, 454.75)
 STATION = (*PULSES, 1019.6875, -568.5)
 FAST = tuple(np.radians([197.0, 190.0, 210.0, 410.0, 410.0, 610.0]).tolist())
 
 
-def known(of, **more):
-    """A program whose machine file tells what is needed."""
+def add_machine_facts(source, **changes):
+    """Return a program with the required values of its machine file."""
     return dataclasses.replace(
-        of, continuous=(False,) * 6, pulses_per_degree=PULSES, max_speed=FAST, **more
+        source, continuous=(False,) * 6, pulses_per_degree=PULSES, max_speed=FAST, **changes
     )
 
 
-def linear(of, unit="mm/s"):
-    """Its beads in linear moves, with the tool on the robot."""
+def make_linear(source, unit="mm/s"):
+    """Return its beads in linear moves, with the tool on the robot."""
     blocks = tuple(
         dataclasses.replace(block, interpolation="linear")
         if isinstance(block, Moves) and block.kind == "deposit"
         else block
-        for block in of.blocks
+        for block in source.blocks
     )
-    return known(
-        dataclasses.replace(of, blocks=blocks),
+    return add_machine_facts(
+        dataclasses.replace(source, blocks=blocks),
         motion="cartesian",
         setup="tool-on-robot",
         speed_unit=unit,
     )
 
 
-def beside(of, **more):
-    """The same with a station of two axes: they tilt by 30 deg, and turn on with every move."""
+def add_station(source, **changes):
+    """Return the program with a station of two axes that tilt by 30 deg and turn further with every
+    move."""
     count, blocks = 0, []
-    for block in of.blocks:
+    for block in source.blocks:
         if isinstance(block, Moves):
             turned = np.radians(
                 np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25]
@@ -68,7 +69,7 @@ def beside(of, **more):
             )
         blocks.append(block)
     return dataclasses.replace(
-        of,
+        source,
         blocks=tuple(blocks),
         **{
             "name": "station",
@@ -78,49 +79,56 @@ def beside(of, **more):
             "unit": "ST1",
             "pulses_per_degree": STATION,
             "max_speed": (*FAST, *np.radians([80.0, 160.0])),
-            **more,
+            **changes,
         },
     )
 
 
-def along(of, at=0, **more):
-    """The same with the robot on a track, which goes on by 12.5 mm with every move: its axis so far behind the robot's."""
+def put_on_track(source, axis_index=0, **changes):
+    """Return the program with the robot on a track that advances by 12.5 mm with every move;
+    `axis_index` counts its axis from the robot's."""
     count, blocks = 0, []
-    for block in of.blocks:
+    for block in source.blocks:
         if isinstance(block, Moves):
-            way = 12.5 * (count + np.arange(len(block))) - 900.125
+            track_positions = 12.5 * (count + np.arange(len(block))) - 900.125
             count += len(block)
-            block = dataclasses.replace(block, joints=np.insert(block.joints, 6 + at, way, axis=1))
+            block = dataclasses.replace(
+                block, joints=np.insert(block.joints, 6 + axis_index, track_positions, axis=1)
+            )
         blocks.append(block)
-    kinds = [*of.external_kinds]
-    kinds.insert(at, "linear")
+    kinds = [*source.external_kinds]
+    kinds.insert(axis_index, "linear")
     return dataclasses.replace(
-        of,
+        source,
         blocks=tuple(blocks),
         **{
             "name": "rail",
-            "continuous": (False,) * (7 + len(of.external_kinds)),
+            "continuous": (False,) * (7 + len(source.external_kinds)),
             "setup": "tool-on-robot",
             "external_kinds": tuple(kinds),
             **{
-                name: (*getattr(of, name)[: 6 + at], value, *getattr(of, name)[6 + at :])
+                name: (
+                    *getattr(source, name)[: 6 + axis_index],
+                    value,
+                    *getattr(source, name)[6 + axis_index :],
+                )
                 for name, value in (("pulses_per_degree", 81.92), ("max_speed", 2500.0))
             },
-            **more,
+            **changes,
         },
     )
 
 
 GOLDENS = {
-    "joint": known(GOLDEN_JOINT),
-    "tool": with_tool(known(GOLDEN_JOINT)),
-    "station": beside(known(GOLDEN_JOINT)),
-    "rail": along(known(GOLDEN_JOINT)),
-    "both": along(beside(known(GOLDEN_JOINT)), at=1, name="both"),
-    "linear": linear(
+    "joint": add_machine_facts(GOLDEN_JOINT),
+    "tool": put_tool_on_robot(add_machine_facts(GOLDEN_JOINT)),
+    "station": add_station(add_machine_facts(GOLDEN_JOINT)),
+    "rail": put_on_track(add_machine_facts(GOLDEN_JOINT)),
+    "both": put_on_track(add_station(add_machine_facts(GOLDEN_JOINT)), axis_index=1, name="both"),
+    "linear": make_linear(
         dataclasses.replace(GOLDEN_JOINT, name="linear", tool_frame=3, deposit_output=7, blend=50)
     ),
-    "parts": linear(beads(1, 12, layers=2, name="parts", max_points=10)),
+    "parts": make_linear(beads(1, 12, layers=2, name="parts", max_points=10)),
 }
 
 
@@ -133,7 +141,9 @@ def test_golden_programs_to_the_byte(root, name):
         for path in (root / "tests/golden/yaskawa").glob(f"{stem}*.JBI")
     }
     assert not [
-        f"{file}: {fault}" for file, content in files.items() for fault in faults(file, content)
+        f"{file}: {fault}"
+        for file, content in files.items()
+        for fault in find_faults(file, content)
     ]
 
 
@@ -144,8 +154,9 @@ INSTRUCTIONS = [
 ]  # fmt: skip
 
 
-def faults(file, content):
-    """What of a job is not as jobs are that controllers wrote: headers, counts, positions used once and in order."""
+def find_faults(file, content):
+    """Return the differences of a job from those that controllers write: headers, counts, positions
+    used once and in order."""
     text = content.decode("ascii")
     if "\n" in text.replace("\r\n", ""):
         yield "line ends"
@@ -163,18 +174,18 @@ def faults(file, content):
         not re.fullmatch(r"///TOOL \d+", lines[4]) or lines[5:7] != ["///POSTYPE PULSE", "///PULSE"]
     ):
         yield "kind of positions"
-    own, base = int(count[1]), int(count[1]) + int(count[2])
-    base_it, beside_it, points = points[own:base], points[base:], points[:own]
-    for letters, told, due, values in (
+    own_count, base = int(count[1]), int(count[1]) + int(count[2])
+    base_it, beside_it, points = points[own_count:base], points[base:], points[:own_count]
+    for letters, stated, due, values in (
         ("BC", base_it, count[2], 1),
         ("EC", beside_it, count[3], 2),
     ):
         form = ",".join([r"-?\d+"] * values)
         if (
             int(due) not in (0, len(points))
-            or len(told) != int(due)
+            or len(stated) != int(due)
             or any(
-                not re.fullmatch(rf"{letters}{k:05d}={form}", line) for k, line in enumerate(told)
+                not re.fullmatch(rf"{letters}{k:05d}={form}", line) for k, line in enumerate(stated)
             )
         ):
             yield f"positions {letters}"
@@ -189,7 +200,7 @@ def faults(file, content):
         yield "frame of the instructions"
     body = lines[start + 6 : -2]
     if len(body) + 2 > 9999 or any(
-        not any(re.fullmatch(one, line) for one in INSTRUCTIONS) for line in body
+        not any(re.fullmatch(pattern, line) for pattern in INSTRUCTIONS) for line in body
     ):
         yield "instructions"
     if [int(number) for number in re.findall(r"MOV[JL] C(\d+)", text)] != list(range(len(points))):
@@ -197,32 +208,38 @@ def faults(file, content):
 
 
 def test_a_positioner_is_a_station_of_the_group():
-    for of in (beside(known(GOLDEN_JOINT)), beside(known(beads(2, 9, layers=2)), max_points=8)):
-        read = yaskawa.read(yaskawa.write(of))
+    for source in (
+        add_station(add_machine_facts(GOLDEN_JOINT)),
+        add_station(add_machine_facts(beads(2, 9, layers=2)), max_points=8),
+    ):
+        readback = yaskawa.read(yaskawa.write(source))
         half = np.radians(0.5 / np.abs(STATION))
         assert (
-            np.abs(read.joints - np.concatenate([run.joints for run in of.moves])) <= half + 1e-12
+            np.abs(readback.joints - np.concatenate([run.joints for run in source.moves]))
+            <= half + 1e-12
         ).all()
-        assert read.unit == "ST1" and read.digits == pytest.approx(half)
-    told = yaskawa.write(beside(known(GOLDEN_JOINT)))["STATION.JBI"].decode()
-    assert "'pulses/deg E1 1019.6875" in told and "'pulses/deg E2 -568.5" in told
-    first = re.search(r"^EC00000=(-?\d+),(-?\d+)", told, re.MULTILINE)
-    assert (int(first[1]), int(first[2])) == (round(30.0 * 1019.6875), round(0.25 * 568.5))
+        assert readback.unit == "ST1" and readback.digits == pytest.approx(half)
+    job_text = yaskawa.write(add_station(add_machine_facts(GOLDEN_JOINT)))["STATION.JBI"].decode()
+    assert "'pulses/deg E1 1019.6875" in job_text and "'pulses/deg E2 -568.5" in job_text
+    match = re.search(r"^EC00000=(-?\d+),(-?\d+)", job_text, re.MULTILINE)
+    assert (int(match[1]), int(match[2])) == (round(30.0 * 1019.6875), round(0.25 * 568.5))
     refusal(
-        beside(known(GOLDEN_JOINT), motion="cartesian"),
+        add_station(add_machine_facts(GOLDEN_JOINT), motion="cartesian"),
         code="COORDINATED_MOTION",
         where="program.motion",
     )
     refusal(
-        beside(known(GOLDEN_JOINT), unit="STN1"), code="UNSUPPORTED_AXES", where="program.axes.unit"
+        add_station(add_machine_facts(GOLDEN_JOINT), unit="STN1"),
+        code="UNSUPPORTED_AXES",
+        where="program.axes.unit",
     )
     refusal(
-        beside(known(GOLDEN_JOINT), first_external=2),
+        add_station(add_machine_facts(GOLDEN_JOINT), first_external=2),
         code="UNSUPPORTED_AXES",
         where="program.axes.first",
     )
     refusal(
-        beside(known(GOLDEN_JOINT), pulses_per_degree=PULSES),
+        add_station(add_machine_facts(GOLDEN_JOINT), pulses_per_degree=PULSES),
         code="NO_PULSES",
         where="cell.machine",
     )
@@ -233,50 +250,63 @@ def test_a_positioner_is_a_station_of_the_group():
         ("EC00001=", "EC00009="),
         ("'pulses/deg E2 -568.5\r\n", ""),
     ):
-        assert old in told
+        assert old in job_text
         with pytest.raises(InputError):
-            yaskawa.read({"STATION.JBI": told.replace(old, new, 1).encode()})
+            yaskawa.read({"STATION.JBI": job_text.replace(old, new, 1).encode()})
 
 
 def test_a_track_is_the_base_axis_of_the_group():
-    stationed = beside(known(beads(2, 9, layers=2)), max_points=8)
-    for of in (along(known(GOLDEN_JOINT)), *(along(stationed, at=at) for at in (0, 1, 2))):
-        read = yaskawa.read(yaskawa.write(of))
-        slides = np.array([*(False,) * 6, *(kind == "linear" for kind in of.external_kinds)])
-        half = 0.5 / np.abs(of.pulses_per_degree)
+    stationed = add_station(add_machine_facts(beads(2, 9, layers=2)), max_points=8)
+    for source in (
+        put_on_track(add_machine_facts(GOLDEN_JOINT)),
+        *(put_on_track(stationed, axis_index=index) for index in (0, 1, 2)),
+    ):
+        readback = yaskawa.read(yaskawa.write(source))
+        slides = np.array([*(False,) * 6, *(kind == "linear" for kind in source.external_kinds)])
+        half = 0.5 / np.abs(source.pulses_per_degree)
         half = np.where(slides, half, np.radians(half))
         assert (
-            np.abs(read.joints - np.concatenate([run.joints for run in of.moves])) <= half + 1e-12
+            np.abs(readback.joints - np.concatenate([run.joints for run in source.moves]))
+            <= half + 1e-12
         ).all()
-        assert read.linear_digits == 0.5 / 81.92 and read.digits[~slides] == pytest.approx(
+        assert readback.linear_digits == 0.5 / 81.92 and readback.digits[~slides] == pytest.approx(
             half[~slides]
         )
-        assert read.unit == of.unit == ("ST1" if len(of.external_kinds) > 1 else "")
-    told = yaskawa.write(along(beside(known(GOLDEN_JOINT)), at=1, name="both"))["BOTH.JBI"].decode()
+        assert readback.unit == source.unit == ("ST1" if len(source.external_kinds) > 1 else "")
+    job_text = yaskawa.write(
+        put_on_track(add_station(add_machine_facts(GOLDEN_JOINT)), axis_index=1, name="both")
+    )["BOTH.JBI"].decode()
     assert (
-        "'pulses/deg E1 1019.6875" in told
-        and "'pulses/mm E2 81.92" in told
-        and "'pulses/deg E3 -568.5" in told
+        "'pulses/deg E1 1019.6875" in job_text
+        and "'pulses/mm E2 81.92" in job_text
+        and "'pulses/deg E3 -568.5" in job_text
     )
-    assert re.search(r"^BC00000=(-?\d+)\r", told, re.MULTILINE)[1] == str(round(-900.125 * 81.92))
-    assert "RB1,BS1,ST1" in told and "MOVJ C00001 BC00001 EC00001 VJ=" in told
+    assert re.search(r"^BC00000=(-?\d+)\r", job_text, re.MULTILINE)[1] == str(
+        round(-900.125 * 81.92)
+    )
+    assert "RB1,BS1,ST1" in job_text and "MOVJ C00001 BC00001 EC00001 VJ=" in job_text
     assert "base axis" in refusal(
-        along(known(GOLDEN_JOINT), motion="cartesian"), code="COORDINATED_MOTION"
+        put_on_track(add_machine_facts(GOLDEN_JOINT), motion="cartesian"), code="COORDINATED_MOTION"
     )
     refusal(
-        along(known(GOLDEN_JOINT), unit="ST1"), code="UNSUPPORTED_AXES", where="program.axes.unit"
+        put_on_track(add_machine_facts(GOLDEN_JOINT), unit="ST1"),
+        code="UNSUPPORTED_AXES",
+        where="program.axes.unit",
     )
     refusal(
-        along(beside(known(GOLDEN_JOINT)), unit=""),
+        put_on_track(add_station(add_machine_facts(GOLDEN_JOINT)), unit=""),
         code="UNSUPPORTED_AXES",
         where="program.axes.unit",
     )
     # the share is that of the axis that takes longest
-    slow = along(known(GOLDEN_JOINT), max_speed=(*FAST, 50.0))
-    first, _, third = re.findall(r"VJ=([\d.]+)", yaskawa.write(slow)["RAIL.JBI"].decode())[:3]
+    slow = put_on_track(add_machine_facts(GOLDEN_JOINT), max_speed=(*FAST, 50.0))
+    first_share, _, third_share = re.findall(
+        r"VJ=([\d.]+)", yaskawa.write(slow)["RAIL.JBI"].decode()
+    )[:3]
     assert (
-        float(third) == pytest.approx(100.0 * 12.5 / 50.0 / slow.moves[1].duration[0], abs=0.006)
-        and first == "10.00"
+        float(third_share)
+        == pytest.approx(100.0 * 12.5 / 50.0 / slow.moves[1].duration[0], abs=0.006)
+        and first_share == "10.00"
     )
     for old, new in (
         ("C00001 BC00001", "C00001"),
@@ -287,58 +317,62 @@ def test_a_track_is_the_base_axis_of_the_group():
         ("'pulses/mm E2 81.92\r\n", ""),
         ("BC00001 EC00001", "EC00001 BC00001"),
     ):
-        assert old in told
+        assert old in job_text
         with pytest.raises(InputError):
-            yaskawa.read({"BOTH.JBI": told.replace(old, new, 1).encode()})
+            yaskawa.read({"BOTH.JBI": job_text.replace(old, new, 1).encode()})
 
 
-def seeded(random_program, seed, cartesian):
-    of = random_program(seed, continuous=False)
+def random_job(random_program, seed, cartesian):
+    source = random_program(seed, continuous=False)
     blocks = tuple(
         dataclasses.replace(block, duration=np.clip(block.duration, 0.3, 0.9))
         if isinstance(block, Moves)
         else block
-        for block in of.blocks
+        for block in source.blocks
     )
-    of = known(dataclasses.replace(of, blocks=blocks))
-    of = linear(of, ("mm/s", "cm/min", "mm/min")[seed % 3]) if cartesian else of
-    return dataclasses.replace(of, max_speed=(12.0,) * 6)
+    source = add_machine_facts(dataclasses.replace(source, blocks=blocks))
+    source = make_linear(source, ("mm/s", "cm/min", "mm/min")[seed % 3]) if cartesian else source
+    return dataclasses.replace(source, max_speed=(12.0,) * 6)
 
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("cartesian", [False, True])
 def test_random_programs_come_back_and_are_as_jobs_are(random_program, seed, cartesian):
-    of = seeded(random_program, seed, cartesian)
-    files = yaskawa.write(of)
+    source = random_job(random_program, seed, cartesian)
+    files = yaskawa.write(source)
     assert not [
-        f"{file}: {fault}" for file, content in files.items() for fault in faults(file, content)
+        f"{file}: {fault}"
+        for file, content in files.items()
+        for fault in find_faults(file, content)
     ]
-    read = yaskawa.read(files)
+    readback = yaskawa.read(files)
     joints, duration, speed, stops = (
-        np.concatenate([getattr(run, name) for run in of.moves])
+        np.concatenate([getattr(run, name) for run in source.moves])
         for name in ("joints", "duration", "speed", "stops")
     )
     straight = np.concatenate(
-        [np.full(len(run), run.interpolation == "linear") for run in of.moves]
+        [np.full(len(run), run.interpolation == "linear") for run in source.moves]
     )
     half = np.radians(0.5 / np.abs(PULSES))
-    assert (np.abs(read.joints - joints) <= half + 1e-12).all() and read.digits == pytest.approx(
-        half
-    )
     assert (
-        read.linear.tolist() == straight.tolist()
-        and read.stops.tolist() == (stops | (of.blend == 0)).tolist()
+        np.abs(readback.joints - joints) <= half + 1e-12
+    ).all() and readback.digits == pytest.approx(half)
+    assert (
+        readback.linear.tolist() == straight.tolist()
+        and readback.stops.tolist() == (stops | (source.blend == 0)).tolist()
     )
-    steps = (np.abs(np.diff(read.joints, axis=0, prepend=read.joints[:1])) / 12.0).max(axis=1)
-    taken = steps / read.share
+    steps = (np.abs(np.diff(readback.joints, axis=0, prepend=readback.joints[:1])) / 12.0).max(
+        axis=1
+    )
+    durations = steps / readback.share
     by_share = ~straight & (np.arange(len(steps)) > 0)
-    assert (np.abs(taken - duration) <= steps * (0.5e-4 / read.share**2) * 1.01 + 1e-9)[
+    assert (np.abs(durations - duration) <= steps * (0.5e-4 / readback.share**2) * 1.01 + 1e-9)[
         by_share
     ].all()
-    assert read.share[0] == pytest.approx(0.1)
-    step = {"mm/s": 0.05, "cm/min": 0.5 / 6.0, "mm/min": 0.5 / 60.0}[of.speed_unit or "mm/s"]
-    assert (np.abs(read.speed - speed)[straight] <= step + 1e-9).all()
-    assert set(read.tool_frame) == {float(of.tool_frame)}
+    assert readback.share[0] == pytest.approx(0.1)
+    step = {"mm/s": 0.05, "cm/min": 0.5 / 6.0, "mm/min": 0.5 / 60.0}[source.speed_unit or "mm/s"]
+    assert (np.abs(readback.speed - speed)[straight] <= step + 1e-9).all()
+    assert set(readback.tool_frame) == {float(source.tool_frame)}
 
 
 def body(content):
@@ -351,18 +385,18 @@ def body(content):
 
 
 def test_the_order_of_a_layer():
-    of = known(program(
+    source = add_machine_facts(program(
         LayerStart(12), moves("rapid", np.zeros((2, 6))), DepositOn(0.5),
         moves("deposit", np.array([[2.0] * 6, [4.0] * 6]), 2.0),
         DepositOff(0.125), Wait(1300.0), WaitInput(4), Call("Clean_1"), deposit_output=9, blend=13,
     ))  # fmt: skip
-    (content,) = yaskawa.write(of).values()
+    (content,) = yaskawa.write(source).values()
     assert body(content)[2:] == [
         "'layer 12", "MOVJ C00000 VJ=10.00 PL=0", "MOVJ C00001 VJ=100.00 PL=0", "DOUT OT#(9) ON", "TIMER T=0.50",
         "MOVJ C00002 VJ=0.53 PL=2", "MOVJ C00003 VJ=0.53 PL=0", "TIMER T=0.12", "DOUT OT#(9) OFF", "TIMER T=600.00",
         "TIMER T=600.00", "TIMER T=100.00", "WAIT IN#(4)=ON", "CALL JOB:CLEAN_1",
     ]  # fmt: skip
-    dry = yaskawa.write(dataclasses.replace(of, dry_run=True))["PART.JBI"]
+    dry = yaskawa.write(dataclasses.replace(source, dry_run=True))["PART.JBI"]
     assert b"DOUT" not in dry and b"'dry run: no deposit" in dry
 
 
@@ -371,7 +405,9 @@ def test_the_order_of_a_layer():
 )
 def test_speeds_have_the_unit_of_the_controller(unit, told):
     run = dataclasses.replace(moves("deposit", np.zeros((1, 6))), speed=np.array([6.3]))
-    (content,) = yaskawa.write(linear(program(moves("rapid", np.zeros(6)), run), unit)).values()
+    (content,) = yaskawa.write(
+        make_linear(program(moves("rapid", np.zeros(6)), run), unit)
+    ).values()
     assert (
         f"MOVL C00001 {told} PL=0".encode() in content and f"'V in {unit}\r\n".encode() in content
     )
@@ -379,13 +415,13 @@ def test_speeds_have_the_unit_of_the_controller(unit, told):
 
 def test_how_far_off_the_speed_of_beads_is_is_told():
     """VJ of 0.526 % is written as 0.53 %."""
-    of = known(
+    source = add_machine_facts(
         program(
             moves("rapid", np.zeros(6)),
             moves("deposit", np.full((1, 6), 2.0), 2.0 / 190.0 / 0.00526),
         )
     )
-    text = yaskawa.write(of)["PART.JBI"].decode()
+    text = yaskawa.write(source)["PART.JBI"].decode()
     assert "VJ=0.53" in text and "speed of\r\n'beads is right to 0.8 %" in text.replace(
         "'VJ has steps of 0.01 %: ", ""
     )
@@ -393,7 +429,7 @@ def test_how_far_off_the_speed_of_beads_is_is_told():
 
 
 def test_parts_hold_whole_beads_and_their_sum_is_told():
-    files = yaskawa.write(linear(beads(3, 20, layers=4, max_points=50)))
+    files = yaskawa.write(make_linear(beads(3, 20, layers=4, max_points=50)))
     assert list(files) == ["PART.JBI"] + [f"PART{n:02d}.JBI" for n in range(1, 7)]
     assert body(files["PART.JBI"]) == [
         "'264 moves in 6 parts",
@@ -405,31 +441,32 @@ def test_parts_hold_whole_beads_and_their_sum_is_told():
             == body(files[name]).count("DOUT OT#(1) OFF")
             == 2
         )
-    long = dataclasses.replace(linear(beads(3, 4000, max_points=10**6)), max_speed=(1e3,) * 6)
+    long = dataclasses.replace(make_linear(beads(3, 4000, max_points=10**6)), max_speed=(1e3,) * 6)
     assert len(yaskawa.write(long)) == 3
 
 
 def test_programs_of_ours_are_known_again_in_their_folder(tmp_path):
-    """A later program of the same name replaces all of an earlier one; remarks of a job follow its positions."""
-    for post, of in (
+    """A later program of the same name replaces the whole earlier one; remarks of a job follow its
+    positions."""
+    for post, source in (
         (yaskawa, GOLDENS["parts"]),
         (yaskawa, GOLDENS["joint"]),
         (ur, dataclasses.replace(GOLDENS["joint"], name="script", setup="tool-on-robot")),
     ):
-        told = dataclasses.replace(of, remarks=("Limits: maker", "Travel speed 6 mm/s"))
-        files = post.write(told)
+        with_remarks = dataclasses.replace(source, remarks=("Limits: maker", "Travel speed 6 mm/s"))
+        files = post.write(with_remarks)
         for name, content in files.items():
             (tmp_path / name).write_bytes(content)
         main = min(files, key=len)
         assert own_programs.programs(str(tmp_path))[main] == set(files)
 
 
-# refusals
+# ---- refusals
 
 
-def refusal(of, *, code, where=None):
+def refusal(source, *, code, where=None):
     with pytest.raises(InputError) as raised:
-        yaskawa.write(of)
+        yaskawa.write(source)
     assert raised.value.code == code and where in (None, raised.value.where)
     return raised.value.message
 
@@ -441,32 +478,39 @@ def test_what_no_job_says_is_refused():
         carrying, code="REMOTE_TCP", where="program.motion"
     )
     refusal(
-        known(program(still), setup="rotary-table"), code="UNSUPPORTED_SETUP", where="cell.setup"
+        add_machine_facts(program(still), setup="rotary-table"),
+        code="UNSUPPORTED_SETUP",
+        where="cell.setup",
     )
     refusal(
-        dataclasses.replace(known(program(still)), continuous=(False,) * 5 + (True,)),
+        dataclasses.replace(add_machine_facts(program(still)), continuous=(False,) * 5 + (True,)),
         code="ENDLESS_AXIS",
     )
     refusal(
-        dataclasses.replace(known(program(still)), pulses_per_degree=()),
+        dataclasses.replace(add_machine_facts(program(still)), pulses_per_degree=()),
         code="NO_PULSES",
         where="cell.machine",
     )
-    refusal(linear(program(still), ""), code="NO_SPEED_UNIT", where="cell.machine")
+    refusal(make_linear(program(still), ""), code="NO_SPEED_UNIT", where="cell.machine")
     refusal(
-        dataclasses.replace(known(program(still)), max_speed=(1.0,) * 5 + (np.inf,)),
+        dataclasses.replace(add_machine_facts(program(still)), max_speed=(1.0,) * 5 + (np.inf,)),
         code="NO_JOINT_SPEED",
     )
-    refusal(known(program(still, WaitBelow(1, 1.0, 0, 0))), code="NO_ANALOGUE_INPUT")
-    refusal(known(program(still, name="1part")), code="PROGRAM_NAME", where="name")
-    assert "program of the job" in refusal(known(program(still, Call("part"))), code="PROGRAM_NAME")
+    refusal(add_machine_facts(program(still, WaitBelow(1, 1.0, 0, 0))), code="NO_ANALOGUE_INPUT")
+    refusal(add_machine_facts(program(still, name="1part")), code="PROGRAM_NAME", where="name")
+    assert "program of the job" in refusal(
+        add_machine_facts(program(still, Call("part"))), code="PROGRAM_NAME"
+    )
     slow = moves("deposit", np.full((1, 6), 0.01), 10.0, layer=4, bead=2)
     assert "steps of 0.01 %" in refusal(
-        known(program(still, slow)), code="JOINT_SPEED", where="layer 4 bead 2"
+        add_machine_facts(program(still, slow)), code="JOINT_SPEED", where="layer 4 bead 2"
     )
-    refusal(known(program(still, moves("deposit", np.full((1, 6), 90.0), 0.1))), code="JOINT_SPEED")
+    refusal(
+        add_machine_facts(program(still, moves("deposit", np.full((1, 6), 90.0), 0.1))),
+        code="JOINT_SPEED",
+    )
     quick = dataclasses.replace(moves("deposit", np.zeros((1, 6))), speed=np.array([1501.0]))
-    refusal(linear(program(still, quick)), code="MOVE_SPEED")
+    refusal(make_linear(program(still, quick)), code="MOVE_SPEED")
 
 
 def test_pulses_are_those_of_a_machine_file(tmp_path):
@@ -479,32 +523,32 @@ def test_pulses_are_those_of_a_machine_file(tmp_path):
     )
     check_pulses(built_in, "joint", "fanuc")
     text = json.loads((machine.BUILT_IN / "motoman-ma2010.json").read_text(encoding="utf-8"))
-    own = tmp_path / "motoman-ma2010.json"
+    machine_file = tmp_path / "motoman-ma2010.json"
 
-    def told(**more):
-        own.write_text(
-            json.dumps({**text, "controller": {**text["controller"], **more}}), encoding="utf-8"
+    def write_with(**values):
+        machine_file.write_text(
+            json.dumps({**text, "controller": {**text["controller"], **values}}), encoding="utf-8"
         )
-        return machine.load(own)
+        return machine.load(machine_file)
 
-    mine = told(pulses_per_degree=PULSES)
-    assert mine.pulses_per_degree == PULSES and written_by(mine) == ("yaskawa",)
-    check_pulses(mine, "joint", "yaskawa")
+    own_machine = write_with(pulses_per_degree=PULSES)
+    assert own_machine.pulses_per_degree == PULSES and written_by(own_machine) == ("yaskawa",)
+    check_pulses(own_machine, "joint", "yaskawa")
     with pytest.raises(InputError) as raised:
-        check_pulses(mine, "cartesian", "yaskawa")
+        check_pulses(own_machine, "cartesian", "yaskawa")
     assert raised.value.code == "NO_SPEED_UNIT"
-    check_pulses(told(pulses_per_degree=PULSES, speed_unit="cm/min"), "cartesian", "yaskawa")
+    check_pulses(write_with(pulses_per_degree=PULSES, speed_unit="cm/min"), "cartesian", "yaskawa")
     for key, wrong in (
         ("pulses_per_degree", [1, 2, 3]),
         ("pulses_per_degree", [1, 2, 3, 4, 5, 0]),
         ("speed_unit", "m/s"),
     ):
         with pytest.raises(InputError) as raised:
-            told(**{key: wrong})
+            write_with(**{key: wrong})
         assert raised.value.code == "BAD_MACHINE" and f"controller.{key}" in raised.value.where
 
 
-# reading
+# ---- reading
 
 
 @pytest.mark.parametrize(("pattern", "replacement", "why"), [
