@@ -874,23 +874,23 @@ JSON = (
     ],
 )
 def test_settings_of_slicers_that_are_not_applied_are_named(tmp_path, name, text, word):
-    part = model(mesh(1, BLOCK, CUBE_FACES), place_item("item", 1))
+    model_text = model(mesh(1, BLOCK, CUBE_FACES), place_item("item", 1))
     for value, count in ((0, 0), (1, 1)):
-        path = write_file(tmp_path, part, more={name: text.format(value)})
+        path = write_file(tmp_path, model_text, more={name: text.format(value)})
         notes = volume_and_notes(path)[1]
         assert len(notes) == count and all(word in note for note in notes)
 
 
 @pytest.mark.parametrize("level", ["object", "volume"])
 def test_settings_of_an_object_are_named_or_refused(tmp_path, level):
-    part = model(mesh(1, BLOCK, CUBE_FACES), place_item("item", 1))
+    model_text = model(mesh(1, BLOCK, CUBE_FACES), place_item("item", 1))
     setting = '<metadata type="object" key="{}" value="{}"/>'
     marker = "<volume" if level == "object" else "</volume>"
     config = prusa((0, 11, {"volume_type": "ModelPart"}))
 
     def path_with(key, value):
         text = config.replace(marker, setting.format(key, value) + marker, 1)
-        return write_file(tmp_path, part, more={PRUSA: text})
+        return write_file(tmp_path, model_text, more={PRUSA: text})
 
     (note,) = volume_and_notes(path_with("xy_size_compensation", "-0.2"))[1]
     assert "'1': xy_size_compensation = -0.2" in note

@@ -215,9 +215,9 @@ def test_unsound_meshes_are_refused_with_a_place():
         (points, corners[:0], "NO_SOLID", "no triangles"),
         (np.where(points > 0.0, np.nan, points), corners, "BAD_FILE", "invalid coordinates"),
     ]
-    for some, triangles, code, words in cases:
+    for vertices, triangles, code, words in cases:
         with pytest.raises(InputError) as caught:
-            mesh_solid(some, triangles, "Scan")
+            mesh_solid(vertices, triangles, "Scan")
         assert (caught.value.code, caught.value.where) == (
             code,
             "Scan",
@@ -245,8 +245,8 @@ def test_meshes_that_can_be_mended_are():
             "1 triangles were flipped",
         ),
     ]
-    for some, triangles, volume, code, words in cases:
-        solid, issues = mesh_solid(some, triangles, "Scan")
+    for vertices, triangles, volume, code, words in cases:
+        solid, issues = mesh_solid(vertices, triangles, "Scan")
         assert solid.volume == pytest.approx(volume)
         assert [issue.code for issue in issues] == [code] and words in issues[0].message, issues
         inside = solid.searched(5.0).signed(np.array([[1.0, 2.0, 3.0], [1.0, 2.0, 11.0]]))[0]

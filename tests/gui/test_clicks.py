@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""From a selected hemisphere to a program by clicks."""
+"""A selected hemisphere becomes a program by clicks."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from freecad_am.gui import program_window, registry
 
 
 def test_from_a_selected_shape_to_a_program_by_clicks(person, hemisphere):
-    part, doc = hemisphere, hemisphere.Document
+    sphere, doc = hemisphere, hemisphere.Document
 
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
@@ -26,12 +26,12 @@ def test_from_a_selected_shape_to_a_program_by_clicks(person, hemisphere):
     ]
     assert api.result(doc.Cell) == replace(
         cell_of(""), limits="paper"
-    )  # no digit is lost in the panel
+    )  # the panel keeps every digit
 
-    person.select(part)
+    person.select(sphere)
     person.click("RoboticAM_Feature")
     panel = person.panel("RoboticAM_RevolutionFeature")
-    assert person.field(panel, "Source").text() == part.Label
+    assert person.field(panel, "Source").text() == sphere.Label
     person.type(panel, "LayerHeight", "0.5 cm")
     person.screenshot("panel_feature")
     person.press("Ok")
@@ -43,7 +43,7 @@ def test_from_a_selected_shape_to_a_program_by_clicks(person, hemisphere):
     person.press("Ok")
     person.panel_closed()
     assert doc.Toolpath.Layers == 15
-    assert not part.ViewObject.Visibility  # the path lies in its surface
+    assert not sphere.ViewObject.Visibility  # the path is in its surface
     person.path_is_seen()
     person.screenshot("toolpath")
 
@@ -83,7 +83,7 @@ def test_new_job_makes_all_stages_in_one_step_of_undo(person, hemisphere, coarse
     person.press("Ok")
     person.panel_closed()
     assert [obj.Status for obj in api.stages_of(doc)] == ["up to date"] * 5
-    assert doc.Feature.Source[1] == []  # one face clicked stands for the whole part
+    assert doc.Feature.Source[1] == []  # a clicked face selects the whole part
     person.look()
     person.screenshot("new_job")
     undo = doc.UndoCount
@@ -127,7 +127,7 @@ def test_a_tool_without_its_input_is_greyed_and_says_what_to_make_first(person, 
         )
         person.gui.runCommand(
             f"RoboticAM_{command}"
-        )  # by a shortcut or macro it says so too, and opens nothing
+        )  # a shortcut or macro gives the same message and opens nothing
         assert not person.gui.Control.activeDialog()
     assert api.stages_of(hemisphere.Document) == []
 
@@ -150,7 +150,7 @@ def test_what_is_wrong_is_told_in_the_panel_and_nothing_is_made(
     panel = person.panel("RoboticAM_RevolutionFeature")
     person.type(panel, name, text)
     person.press("Ok")
-    if text == "500 mm":  # only the layers know that it is too much
+    if text == "500 mm":  # only the planner of the layers knows the limit
         person.panel_closed()
         person.click("RoboticAM_Toolpath")
         panel = person.panel("RoboticAM_Toolpath")
@@ -181,14 +181,14 @@ def test_a_double_click_changes_parameters_in_one_step_of_undo(person, hemispher
         "iso-height",
         "up to date",
     )
-    fewer = toolpath.Layers
-    assert fewer < 10 and len(api.result(toolpath).layers) == fewer
+    layer_count = toolpath.Layers
+    assert layer_count < 10 and len(api.result(toolpath).layers) == layer_count
     person.gui.runCommand("Std_Undo")
     assert (feature.LayerHeight.Value, feature.Spacing, toolpath.Layers) == (5.0, "arc-length", 15)
     assert [obj.Key for obj in (feature, toolpath)] == keys and toolpath.Status == "up to date"
     assert len(api.result(toolpath).layers) == 15
     person.gui.runCommand("Std_Redo")
-    assert (toolpath.Layers, toolpath.Status) == (fewer, "up to date")
+    assert (toolpath.Layers, toolpath.Status) == (layer_count, "up to date")
 
 
 def test_the_panel_of_every_stage_opens_and_ok_without_a_change_does_nothing(
@@ -214,10 +214,10 @@ def test_deleting_an_input_is_told_by_what_follows(person, hemisphere, coarse):
     doc = hemisphere.Document
     api.make_all(doc, hemisphere)
     person.select(doc.Toolpath)
-    asked = person.will_answer("Yes")
+    questions = person.will_answer("Yes")
     person.gui.runCommand("Std_Delete")
     person.idle()
-    assert len(asked) == 1 and "Joint path" in asked[0]  # FreeCAD's own question
+    assert len(questions) == 1 and "Joint path" in questions[0]  # FreeCAD's own question
     assert doc.getObject("Toolpath") is None
     assert doc.JointPath.Status == "failed" and "Toolpath is missing" in doc.JointPath.Message
     doc.recompute()
@@ -230,12 +230,12 @@ def test_deleting_an_input_is_told_by_what_follows(person, hemisphere, coarse):
 def test_inputs_and_the_name_can_be_changed_in_the_panel(person, hemisphere, coarse):
     doc = hemisphere.Document
     _, feature, toolpath, _, program = api.make_all(doc, hemisphere, name="CUP")
-    other = api.make_cell(doc, "Other cell", platform_diameter=100)
+    other_cell = api.make_cell(doc, "Other cell", platform_diameter=100)
     registry.edit(toolpath)
     person.choose(person.panel("RoboticAM_Toolpath"), "InputCell", "Other cell")
     person.press("Ok")
     person.panel_closed()
-    assert toolpath.Cell == other and toolpath.Feature == feature
+    assert toolpath.Cell == other_cell and toolpath.Feature == feature
     registry.edit(program)
     panel = person.panel("RoboticAM_Program")
     person.type(panel, "ProgramName", "not a name")
@@ -259,7 +259,7 @@ def test_a_line_turned_about_an_axis_by_clicks(person):
     person.click("RoboticAM_Feature")
     panel = person.panel("RoboticAM_RevolutionFeature")
     person.press("Ok")
-    assert person.panel_error(panel)  # a line alone has no axis
+    assert person.panel_error(panel)  # a line has no axis
     person.select(axis, "Edge1")
     person.field(panel, "UseAxis").click()
     person.press("Ok")
@@ -319,9 +319,9 @@ def test_the_program_is_exported_from_its_window(person, hemisphere, coarse, tmp
 
 
 def test_a_program_that_failed_asks_for_no_folder(person, hemisphere, coarse, monkeypatch):
-    asked, doc = [], hemisphere.Document
+    questions, doc = [], hemisphere.Document
     monkeypatch.setattr(
-        person.widgets.QFileDialog, "getExistingDirectory", lambda *_: asked.append(1) or ""
+        person.widgets.QFileDialog, "getExistingDirectory", lambda *_: questions.append(1) or ""
     )
     program = api.make_all(doc, hemisphere, name="CUP")[-1]
     person.double_click(program)
@@ -336,18 +336,19 @@ def test_a_program_that_failed_asks_for_no_folder(person, hemisphere, coarse, mo
         "no program matches its inputs" in button.toolTip()
         and "exceeds the length of the wall" in button.toolTip()
     )
-    before = len(person.console())
-    assert "no program matches its inputs" in program_window.export(program)  # of the context menu
+    console_length = len(person.console())
+    # from the context menu
+    assert "no program matches its inputs" in program_window.export(program)
     person.until(
-        lambda: "no program matches its inputs" in person.console()[before:],
+        lambda: "no program matches its inputs" in person.console()[console_length:],
         "why, in the report view",
         5,
     )
-    assert not asked
+    assert not questions
     api.change(doc.Feature, layer_height=15)
     person.until(button.isEnabled, "the button to be lit", 5)
     program_window.export(program)
-    assert asked == [1]
+    assert questions == [1]
     person.field(button.window(), "close").click()
 
 
@@ -363,7 +364,7 @@ def test_the_open_window_of_a_program_follows_it(person, hemisphere, coarse):
     assert "do not run it. Status: stale" in person.field(window, "state").text()
     person.double_click(program)
     windows = person.present(person.widgets.QDialog, "RoboticAM_ProgramText")
-    assert len([one for one in windows if one.isVisible()]) == 1
+    assert len([window for window in windows if window.isVisible()]) == 1
     person.gui.runCommand("Std_Undo")
     person.idle()
     assert person.field(window, "text").toPlainText().startswith("/PROG  CUP")
@@ -380,16 +381,16 @@ def test_a_new_job_that_cannot_be_carried_out_says_so_once(person, hemisphere, n
     person.select(ring)
     person.click("RoboticAM_NewJob")
     person.as_revolution()
-    said = len(person.console())
+    console_length = len(person.console())
     person.press("Ok")
     person.panel_closed()
     joint_path = hemisphere.Document.JointPath
     assert joint_path.Status == "infeasible"
-    # a larger one than the largest there is would be refused
+    # a value above the maximum would be rejected
     assert hemisphere.Document.Cell.PlatformDiameter.Value == 10_000.0
     lines = [
         line
-        for line in person.console()[said:].splitlines()
+        for line in person.console()[console_length:].splitlines()
         if joint_path.Message.rstrip(".") in line
     ]
     assert len(lines) == 1 and lines[0].endswith(f"Joint path is infeasible: {joint_path.Message}")
@@ -407,7 +408,7 @@ def test_what_a_change_makes_impossible_is_told_in_the_report_view(
     api.make_all(doc, hemisphere)
     person.double_click(doc.Cell)
     panel = person.panel("RoboticAM_Cell")
-    said = len(person.console())
+    console_length = len(person.console())
     person.type(panel, "DepositionPointX", "3 m")
     person.press("Ok")
     person.panel_closed()
@@ -416,7 +417,11 @@ def test_what_a_change_makes_impossible_is_told_in_the_report_view(
         "infeasible",
         "infeasible",
     )
-    lines = [line for line in person.console()[said:].splitlines() if " is infeasible: " in line]
+    lines = [
+        line
+        for line in person.console()[console_length:].splitlines()
+        if " is infeasible: " in line
+    ]
     assert (
         len(lines) == 1
         and "Joint path is infeasible: layer 0" in lines[0]

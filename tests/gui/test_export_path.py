@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Export Path by clicks: files and objects appear, errors stay in the panel, one step of undo."""
+"""Export Path by clicks: files and objects appear, errors stay in the panel, one undo step."""
 
 import csv
 import json
@@ -24,10 +24,10 @@ NAME = "RoboticAM_ExportPath"
 def job(person):
     doc = App.newDocument("Export")
     doc.UndoMode = 1
-    part = doc.addObject("Part::Sphere", "Sphere")
-    part.Radius, part.Angle1, part.Angle2 = 45.0, 0, 90
+    sphere = doc.addObject("Part::Sphere", "Sphere")
+    sphere.Radius, sphere.Angle1, sphere.Angle2 = 45.0, 0, 90
     doc.recompute()
-    feature = api.make_feature(doc, part, layer_height=15)
+    feature = api.make_feature(doc, sphere, layer_height=15)
     toolpath = api.make_toolpath(doc, feature)
     person.open_workbench()
     person.gui.Selection.clearSelection()
@@ -54,7 +54,7 @@ def refused(person):
 
 
 def test_wires_are_written_where_the_panel_says(person, job, tmp_path):
-    folder = tmp_path / "fils"  # screenshots may be in the other
+    folder = tmp_path / "fils"  # the other folder may have screenshots
     panel = opened(person)
     assert person.field(panel, "Path").currentText() == job.Label
     path = str(folder / "mes fils é.step")
@@ -80,7 +80,7 @@ def test_wires_are_written_where_the_panel_says(person, job, tmp_path):
 
 
 def test_waypoints_are_a_table_of_all_points_and_axes(person, job, tmp_path):
-    """Of a robot that has no post, with the columns of every robot."""
+    """The robot has no post, and the table has the columns of every robot."""
     cell = api.make_cell(
         job.Document,
         machine="kuka-kr16-2",
@@ -100,8 +100,8 @@ def test_waypoints_are_a_table_of_all_points_and_axes(person, job, tmp_path):
     assert [name for name in rows[0] if name.startswith("q")] == [f"q{k}_deg" for k in range(1, 7)]
     joints = np.radians([[float(row[f"q{k}_deg"]) for k in range(1, 7)] for row in rows])
     np.testing.assert_allclose(joints, motion.joints, rtol=0, atol=1e-8)
-    places = [[float(row[f"{axis}_mm"]) for axis in "xyz"] for row in rows]
-    np.testing.assert_allclose(places, motion.position, rtol=0, atol=1e-6)
+    positions = [[float(row[f"{axis}_mm"]) for axis in "xyz"] for row in rows]
+    np.testing.assert_allclose(positions, motion.position, rtol=0, atol=1e-6)
     assert {row["kind"] for row in rows} == {"deposit", "rapid"}
 
 
@@ -118,8 +118,8 @@ def test_a_joint_path_is_a_trajectory_of_ros(person, job, tmp_path):
     np.testing.assert_allclose(positions, motion.joints[[0, -1]], rtol=0, atol=1e-8)
 
 
-def of_menu(job, person):
-    """The panel that the entry of the context menu opens."""
+def panel_from_menu(job, person):
+    """Return the panel that the entry of the context menu opens."""
     menu = person.widgets.QMenu()
     job.ViewObject.Proxy.setupContextMenu(job.ViewObject, menu)
     next(
@@ -130,7 +130,8 @@ def of_menu(job, person):
 
 
 def test_the_report_of_a_joint_path_is_a_page(person, job, tmp_path):
-    """From the menu of the joint path, of a robot without a program too; what the page says is held in tests/batch."""
+    """The menu of the joint path opens it, also for a robot without a program; tests/batch checks
+    the content of the page."""
     cell = api.make_cell(
         job.Document,
         machine="kuka-kr16-2",
@@ -138,7 +139,7 @@ def test_the_report_of_a_joint_path_is_a_page(person, job, tmp_path):
         branch="auto",
     )
     path = api.make_joint_path(job.Document, job, cell)
-    panel = of_menu(path, person)
+    panel = panel_from_menu(path, person)
     assert person.field(panel, "Path").currentText() == path.Label
     assert person.field(panel, "Kind").currentText() == "HTML page of the report"
     assert not person.field(panel, "Rapids").isVisible()
@@ -160,15 +161,15 @@ def test_the_report_of_a_joint_path_is_a_page(person, job, tmp_path):
         page.startswith("<!DOCTYPE html>") and page.endswith("</html>\n") and "KUKA KR 16-2" in page
     )
     assert f">{len(api.result(path).joint_path.beads)}</b><span>beads" in page
-    of_menu(job, person)  # a path without joints has one too
+    panel_from_menu(job, person)  # a path without joints has one too
     person.press("Cancel")
 
 
 def test_a_report_is_cancelled_and_leaves_nothing(person, job, tmp_path, monkeypatch):
-    begun = []
+    started = []
 
     def endless(self):
-        begun.append(True)
+        started.append(True)
         for _ in range(6000):
             time.sleep(0.01)
             progress.report(0.8, "drawing the page")
@@ -176,21 +177,21 @@ def test_a_report_is_cancelled_and_leaves_nothing(person, job, tmp_path, monkeyp
 
     def cancel():
         for dialog in person.present(person.widgets.QDialog, busy.NAME):
-            if begun and dialog.isVisible():
+            if started and dialog.isVisible():
                 timer.stop()
                 person.field(dialog, "cancel").click()
 
     monkeypatch.setattr(made.Made, "page", endless)
     timer = person.core.QTimer()
     timer.timeout.connect(cancel)
-    panel = of_menu(job, person)
+    panel = panel_from_menu(job, person)
     person.type(panel, "File", str(tmp_path / "page.html"))
     timer.start(50)
     person.press("Ok")
-    assert begun and "Cancelled" in person.panel_error(panel)
+    assert started and "Cancelled" in person.panel_error(panel)
     monkeypatch.undo()
     person.until(
-        lambda: not any(one.name == "Robotic AM" for one in threading.enumerate()),
+        lambda: not any(thread.name == "Robotic AM" for thread in threading.enumerate()),
         "the work to end",
         60,
     )
@@ -209,7 +210,7 @@ def test_what_cannot_be_written_is_told_in_the_panel(person, job, tmp_path):
     assert note.isVisible() and "does not exist" in note.text()
     assert not person.field(panel, "error").isVisible()
     person.type(panel, "File", str(tmp_path / "a.txt"))
-    assert not note.isVisible()  # what it was about is no more
+    assert not note.isVisible()  # its cause is gone
     refused(person)
     assert note.isVisible() and "use the extension .step or .dxf" in note.text()
     person.choose(panel, "Kind", "CAM path in this document")
@@ -224,21 +225,21 @@ def test_cam_path_and_trajectory_are_objects_in_one_step(person, job):
         ("CAM path in this document", "Path::Feature"),
         ("Robot trajectory in this document", "Robot::TrajectoryObject"),
     ):
-        before, steps = len(doc.Objects), doc.UndoCount
+        object_count, steps = len(doc.Objects), doc.UndoCount
         panel = opened(person)
         person.choose(panel, "Kind", kind)
         assert not person.field(panel, "File").isVisible()
         taken(person)
-        assert doc.Objects[-1].TypeId == type_name and len(doc.Objects) == before + 1
+        assert doc.Objects[-1].TypeId == type_name and len(doc.Objects) == object_count + 1
         assert doc.UndoCount == steps + 1
         doc.undo()
         person.idle()
-        assert len(doc.Objects) == before
+        assert len(doc.Objects) == object_count
 
 
 def test_a_document_closed_meanwhile_is_told(person, job):
     panel = opened(person)
-    App.newDocument("Other")  # FreeCAD 1.1 hides panels, which lie over a view, where there is none
+    App.newDocument("Other")  # FreeCAD 1.1 hides panels, which cover a view, where there is no view
     App.closeDocument(job.Document.Name)
     person.idle()
     if person.gui.Control.activeDialog():

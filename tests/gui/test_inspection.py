@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Inspect: object and file are chosen, the panel tells figures, the points are seen in the colours of their deviations."""
+"""Inspect: the user selects object and file, the panel shows figures, and the points have the
+colours of their deviations."""
 
 import FreeCAD as App
 import numpy as np
@@ -17,10 +18,12 @@ PANEL = "RoboticAM_Inspection"
 @pytest.fixture
 def part(person, root):
     document = App.newDocument("Measured")
-    made = api.open_part(document, str(root / "resources" / "examples" / "hemisphere.step"))
-    api.make_feature(document, made, layer_height=3)
-    made.ViewObject.Visibility = False
-    return made
+    imported_part = api.open_part(
+        document, str(root / "resources" / "examples" / "hemisphere.step")
+    )
+    api.make_feature(document, imported_part, layer_height=3)
+    imported_part.ViewObject.Visibility = False
+    return imported_part
 
 
 @pytest.fixture
@@ -29,22 +32,24 @@ def points(root):
 
 
 def figures(panel, person):
-    """What the table tells, by names that are to be seen whole; those of a place with its name before."""
-    table, found, place = person.field(panel, "Figures"), {}, ""
+    """Return the figures of the table under their completely visible names; those of a position
+    have its name before."""
+    table, values, prefix = person.field(panel, "Figures"), {}, ""
     for row in range(table.rowCount()):
         name = table.item(row, 0)
         room = table.viewport().width() if table.columnSpan(row, 0) > 1 else table.columnWidth(0)
         assert table.fontMetrics().boundingRect(name.text()).width() < room, name.text()
         if table.columnSpan(row, 0) > 1:
-            place = f"{name.text()} "
+            prefix = f"{name.text()} "
         else:
-            place = place if name.text().startswith("\u2003") else ""
-            found[place + name.text().strip()] = table.item(row, 1).text()
-    return found
+            prefix = prefix if name.text().startswith("\u2003") else ""
+            values[prefix + name.text().strip()] = table.item(row, 1).text()
+    return values
 
 
 def green_and_red(person):
-    """How many pixels have the colours of what is within tolerance, and of what is most outside."""
+    """Return how many pixels have the colours of points within tolerance, and of the largest
+    deviation."""
     colours = {band.text: 255.0 * np.array(band.colour) for band in bands(0.05)}
     pixels = person.picture()
     return [
@@ -63,12 +68,14 @@ def test_inspected_by_clicks_undone_saved_and_opened_again(person, hand, part, p
     hand.enter(panel, "ProbeRadius", "1.5 mm")
     person.type(panel, "Heights", "15 25 35")
     person.press("Apply")
-    made = document.getObject("Inspection")
-    assert made is not None, person.panel_error(panel)
-    assert (made.Status, document.UndoCount) == ("up to date", steps + 1)
-    told = figures(panel, person)
-    assert float(told["Sphericity"]) == pytest.approx(0.275, abs=0.01)
-    assert float(told["At height 35 mm Circularity"]) > float(told["At height 15 mm Circularity"])
+    inspection = document.getObject("Inspection")
+    assert inspection is not None, person.panel_error(panel)
+    assert (inspection.Status, document.UndoCount) == ("up to date", steps + 1)
+    shown_figures = figures(panel, person)
+    assert float(shown_figures["Sphericity"]) == pytest.approx(0.275, abs=0.01)
+    assert float(shown_figures["At height 35 mm Circularity"]) > float(
+        shown_figures["At height 15 mm Circularity"]
+    )
     assert person.field(panel, "DeviationHistogram").isVisible()
     green, yellow = green_and_red(person)
     assert green > 500 and yellow > 100
@@ -93,7 +100,7 @@ def test_inspected_by_clicks_undone_saved_and_opened_again(person, hand, part, p
     again = opened.Inspection
     assert again.Status == "up to date" and min(green_and_red(person)) > 100
     person.double_click(again)
-    assert figures(person.panel(PANEL), person) == told
+    assert figures(person.panel(PANEL), person) == shown_figures
     person.press("Cancel")
     person.panel_closed()
 
@@ -137,7 +144,7 @@ def test_what_is_wrong_is_told_beside_its_field_and_nothing_is_left(person, part
     (tmp_path / "scan.docx").write_text("1 2 3")
     (tmp_path / "words.csv").write_text("a;b;c\n")
     note = person.field(panel, "FileNote")
-    for name, told in (
+    for name, message in (
         ("nowhere.csv", "cannot be read"),
         ("empty.csv", "empty"),
         ("scan.docx", "not a supported point format"),
@@ -145,7 +152,7 @@ def test_what_is_wrong_is_told_beside_its_field_and_nothing_is_left(person, part
     ):
         person.type(panel, "File", str(tmp_path / name))
         person.press("Ok")
-        assert note.isVisible() and told in note.text(), (
+        assert note.isVisible() and message in note.text(), (
             name,
             note.text(),
             person.panel_error(panel),
@@ -173,13 +180,13 @@ def test_what_was_to_be_compared_is_deleted_while_the_panel_is_open(person, part
     person.type(panel, "ProbeRadius", "1.5 mm")
     person.press("Ok")
     person.panel_closed()
-    made = document.Inspection
-    assert made.Status == "up to date" and abs(made.Mean.Value) < 0.01
+    inspection = document.Inspection
+    assert inspection.Status == "up to date" and abs(inspection.Mean.Value) < 0.01
     document.removeObject(part.Name)
     document.recompute()
     person.idle(0.3)
-    assert made.Status == "failed" and "missing" in made.Message
-    person.double_click(made)
+    assert inspection.Status == "failed" and "missing" in inspection.Message
+    person.double_click(inspection)
     assert person.field(person.panel(PANEL), "Figures").rowCount() > 5
     person.press("Cancel")
     person.panel_closed()
@@ -198,13 +205,14 @@ def test_panel_survives_its_document(person, part, points):
 
 
 def test_a_predicted_deposit_is_shown_by_a_click_and_grows_as_high(person, hand, part):
-    """Without a file: the deposit that the toolpath is predicted to leave, in the colours of its deviations, with histogram
-    and figures; a simulation then draws beads as high as they are predicted to end."""
+    """No file is needed: the predicted deposit of the toolpath appears in the colours of its
+    deviations, with histogram and figures. A simulation then draws beads as high as their predicted
+    ends."""
     document = part.Document
-    made = api.make_cell(document, limits="paper")
-    path = api.make_toolpath(document, document.Feature, made, bead_width=6)
-    joints = api.make_joint_path(document, path, made)
-    for drawn in (made, path, joints, document.Feature):
+    cell = api.make_cell(document, limits="paper")
+    path = api.make_toolpath(document, document.Feature, cell, bead_width=6)
+    joints = api.make_joint_path(document, path, cell)
+    for drawn in (cell, path, joints, document.Feature):
         drawn.ViewObject.Visibility = False
     hand.click(person.button("RoboticAM_Inspect"))
     panel = person.panel(PANEL)
@@ -214,9 +222,9 @@ def test_a_predicted_deposit_is_shown_by_a_click_and_grows_as_high(person, hand,
     person.press("Apply")
     inspection = document.getObject("Inspection")
     assert inspection is not None, person.panel_error(panel)
-    found = api.result(inspection)
+    result = api.result(inspection)
     assert person.field(panel, "DeviationHistogram").isVisible()
-    assert int(figures(panel, person)["Points"]) == len(found.deviation)
+    assert int(figures(panel, person)["Points"]) == len(result.deviation)
     assert [legend._lines((), scale) for scale in legend.visible_scales(document)] == [
         ["deviation, mm"]
     ]
@@ -230,13 +238,13 @@ def test_a_predicted_deposit_is_shown_by_a_click_and_grows_as_high(person, hand,
     person.press("Ok")
     person.panel_closed()
     run = run_of(joints)
-    assert run.deposit is not None and len(run.deposit) == len(found.laid)
+    assert run.deposit is not None and len(run.deposit) == len(result.laid)
     beads = _beads(run)
-    low = found.laid[found.laid[:, 3] == 0]
+    low = result.laid[result.laid[:, 3] == 0]
     assert float(beads[0].height.mean()) == pytest.approx(
         float(np.maximum(low[:, 4], 1e-3).mean()), rel=0.02
     )
-    path.BeadWidth = 5  # another deposit, of which nothing is known
+    path.BeadWidth = 5  # another deposit, without a prediction
     assert run_of(joints).deposit is None
 
 

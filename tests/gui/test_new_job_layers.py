@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curved layers that New Job proposes and that cannot be carried out become planes, which is told; layers that were chosen
-stay."""
+"""If curved layers that New Job proposes are infeasible, it makes planes and says so; layers chosen
+by the user stay."""
 
 import pytest
 
@@ -17,29 +17,32 @@ def test_planes_are_laid_where_curved_layers_that_were_proposed_cannot_be(
     monkeypatch.setattr(
         api,
         "make_feature_of",
-        lambda *given, values, **named: make(*given, values={**coarse, **values}, **named),
+        lambda *arguments, values, **named: make(*arguments, values={**coarse, **values}, **named),
     )
-    part = doc.addObject("Part::Feature", "Tee")
-    part.Shape = tee()
+    tee_object = doc.addObject("Part::Feature", "Tee")
+    tee_object.Shape = tee()
     doc.recompute()
-    person.select(part)
+    person.select(tee_object)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     kind = person.field(panel, "Kind")
     person.until(lambda: kind.currentData() == "geodesic", "the proposal", 20)
     if chosen:
-        for one in ("solid", "geodesic"):
-            person.choose(panel, "Kind", one)
+        for choice_ in ("solid", "geodesic"):
+            person.choose(panel, "Kind", choice_)
             kind.activated.emit(kind.currentIndex())
         person.until(
             lambda: "as you chose" in person.field(panel, "reason").text(), "that it was chosen", 5
         )
     hand.enter(panel, "Machine", "kuka-kr16-2")
-    before, steps = len(person.console()), doc.UndoCount
+    console_length, steps = len(person.console()), doc.UndoCount
     person.press("Ok")
     person.panel_closed()
     _, feature, _, path = api.stages_of(doc)[:4]
-    said, status = person.console()[before:], person.window.statusBar().currentMessage()
+    console_text, status = (
+        person.console()[console_length:],
+        person.window.statusBar().currentMessage(),
+    )
     assert doc.UndoCount == steps + 1
     if chosen:
         assert (feature.Layers, path.Status) == (
@@ -47,6 +50,6 @@ def test_planes_are_laid_where_curved_layers_that_were_proposed_cannot_be(
             "infeasible",
         ) and "Joint path is infeasible" in status
     else:
-        assert (feature.Layers, path.Status) == ("planes", "up to date"), said
-        assert "layers: planes, because geodesic layers end with " in said
+        assert (feature.Layers, path.Status) == ("planes", "up to date"), console_text
+        assert "layers: planes, because geodesic layers end with " in console_text
         assert status.startswith("Planar layers are used, as curved layers were infeasible. ")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The wizard of a new machine, by mouse and keys: every source, poses from a pendant, what is wrong with them, the file."""
+"""The wizard of a new machine, by mouse and keys: every source, poses from a pendant, their errors,
+the file."""
 
 import json
 import os
@@ -25,23 +26,23 @@ def wizard(person):
     from freecad_am.gui.machine_wizard import wizard as module
 
     person.click("RoboticAM_NewMachine")
-    shown = person.panel(NAME)
-    yield shown
+    dialog = person.panel(NAME)
+    yield dialog
     for path in (
         os.path.join(folder, name)
         for folder in user_machines.folders()
         for name in os.listdir(folder)
     ):
         os.remove(path)
-    for left in list(module._open):
-        left._confirm_discard = lambda: True
-        left.close()
+    for open_wizard in list(module._open):
+        open_wizard._confirm_discard = lambda: True
+        open_wizard.close()
     person.idle()
 
 
 @pytest.fixture
 def broken(tmp_path):
-    """A folder of the preferences with a file that is not a machine."""
+    """Return a folder of the preferences with a file that is not a machine."""
     (tmp_path / "broken.json").write_text('{"id": "broken", ', encoding="utf-8")
     group = App.ParamGet(preferences.GROUP)
     group.SetString("MachineFolder", str(tmp_path))
@@ -60,19 +61,19 @@ def go_on(person, hand, wizard, expected):
 
 
 def refused(person, hand, wizard, button="NextButton"):
-    before = page(wizard)
+    original_page = page(wizard)
     hand.click(wizard.button(getattr(person.widgets.QWizard, button)))
-    assert page(wizard) == before
+    assert page(wizard) == original_page
     error = person.field(wizard.currentPage(), "error")
     assert error.isVisible()
     return error.text()
 
 
 def type_row(person, hand, table, row, values, column=0):
-    """Click the first cell, type, go on by Tab."""
+    """Click the first cell, type, and continue with Tab."""
     table.scrollTo(table.model().index(row, column))
-    place = table.visualRect(table.model().index(row, column)).center()
-    where = table.viewport().mapToGlobal(place)
+    cell_centre = table.visualRect(table.model().index(row, column)).center()
+    where = table.viewport().mapToGlobal(cell_centre)
     hand.at((where.x(), where.y()))
     for value in values:
         hand.do("type", "--delay", "8", "--", f"{value:.10g}")
@@ -80,7 +81,7 @@ def type_row(person, hand, table, row, values, column=0):
 
 
 def fill(table, values, column=0, row=0):
-    """Paste figures, as from a spreadsheet."""
+    """Paste numbers, as from a spreadsheet."""
     from PySide import QtGui
 
     QtGui.QApplication.clipboard().setText(
@@ -91,12 +92,14 @@ def fill(table, values, column=0, row=0):
 
 
 def pendant_poses(name="fanuc-arcmate120ic", count=4, convention=draft.FANUC):
-    """Joints and poses as the pendant shows them, rounded as on its display."""
+    """Return joints and poses as the pendant shows them, rounded like its display."""
     arm = machine.load(name)
-    shown = np.random.default_rng(5).uniform(-70, 70, (count, 6)).round(2)
-    shown[0] = np.degrees(arm.controller_offset)
-    poses = np.linalg.inv(arm.base) @ arm.chain.forward(arm.from_controller(np.radians(shown)))
-    return np.column_stack((shown, draft.figures_of(convention, poses).round(3)))
+    joint_values = np.random.default_rng(5).uniform(-70, 70, (count, 6)).round(2)
+    joint_values[0] = np.degrees(arm.controller_offset)
+    poses = np.linalg.inv(arm.base) @ arm.chain.forward(
+        arm.from_controller(np.radians(joint_values))
+    )
+    return np.column_stack((joint_values, draft.figures_of(convention, poses).round(3)))
 
 
 def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_path):
@@ -149,15 +152,15 @@ def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_
     person.until(
         lambda: user_machines.folders() and os.listdir(user_machines.folders()[0]), "the file"
     )
-    made = machine.load("fanuc-of-hall-3", user_machines.folders())
+    new_machine = machine.load("fanuc-of-hall-3", user_machines.folders())
     q = np.random.default_rng(1).uniform(-2, 2, (20, 6))
-    np.testing.assert_allclose(made.chain.forward(q), arm.chain.forward(q), atol=1e-9)
-    np.testing.assert_allclose(made.to_controller(q), arm.to_controller(q), atol=1e-12)
-    np.testing.assert_allclose(made.base, arm.base)
-    assert made.posts == ("fanuc",) and np.degrees(made.limits("maker").lower[1]) == pytest.approx(
-        -95.0
-    )
-    # it can be chosen at once
+    np.testing.assert_allclose(new_machine.chain.forward(q), arm.chain.forward(q), atol=1e-9)
+    np.testing.assert_allclose(new_machine.to_controller(q), arm.to_controller(q), atol=1e-12)
+    np.testing.assert_allclose(new_machine.base, arm.base)
+    assert new_machine.posts == ("fanuc",) and np.degrees(
+        new_machine.limits("maker").lower[1]
+    ) == pytest.approx(-95.0)
+    # the machine is available at once
     App.newDocument("Cell")
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
@@ -206,10 +209,10 @@ def test_a_copy_keeps_its_poses_and_a_name_that_is_taken_is_refused(person, hand
     )
     hand.enter(wizard, "machineName", "big-kuka")
     hand.click(wizard.button(person.widgets.QWizard.FinishButton))
-    made = machine.load("big-kuka", user_machines.folders())
+    new_machine = machine.load("big-kuka", user_machines.folders())
     assert (
-        made.opw == machine.load("kuka-kr16-2").opw
-        or made.opw.c2 == machine.load("kuka-kr16-2").opw.c2
+        new_machine.opw == machine.load("kuka-kr16-2").opw
+        or new_machine.opw.c2 == machine.load("kuka-kr16-2").opw.c2
     )
     file = os.path.join(user_machines.folders()[0], "big-kuka.json")
     with open(file, encoding="utf-8") as text:
@@ -243,7 +246,7 @@ def test_figures_with_a_wrong_sign_are_found_out(person, hand, wizard):
     hand.click(wizard.button(person.widgets.QWizard.BackButton))
     assert page(wizard) == "FramesPage" and person.field(wizard, "axes").item(0, 4).text() == "-1"
     hand.click(wizard.button(person.widgets.QWizard.NextButton))
-    assert "reproduces all 4 poses" in verdict.text()  # they stay
+    assert "reproduces all 4 poses" in verdict.text()  # the poses stay
 
 
 def test_tables_are_read_and_what_is_no_arm_is_refused_with_the_reason(person, hand, wizard):
@@ -255,7 +258,8 @@ def test_tables_are_read_and_what_is_no_arm_is_refused_with_the_reason(person, h
         [[np.degrees(row.theta), row.d, row.a, np.degrees(row.alpha), 1] for row in table.rows]
     )
     offset = rows.copy()
-    offset[3, 2] += 30.0  # axes 4 and 5 no longer meet, which no inverse of ours can follow
+    # axes 4 and 5 no longer meet, and the package has no inverse kinematics for that
+    offset[3, 2] += 30.0
     fill(person.field(wizard, "dhTable"), offset)
     ends = person.field(wizard, "dhEnds")
     from freecad_am.core.geometry import frames
@@ -276,13 +280,13 @@ def test_tables_are_read_and_what_is_no_arm_is_refused_with_the_reason(person, h
     type_row(person, hand, person.field(wizard, "limits"), 0, [10.0, -10.0])
     assert "10 is not below -10" in refused(person, hand, wizard)
     # Escape closes it after a question, and nothing is left
-    asked = person.will_answer("Discard")
+    questions = person.will_answer("Discard")
     hand.do("key", "Escape")
     hand.do("key", "Escape")
     from freecad_am.gui.machine_wizard import wizard as module
 
     person.until(lambda: not module._open, "the wizard to close")
-    assert len(asked) == 1
+    assert len(questions) == 1
     assert not user_machines.folders() or not os.listdir(user_machines.folders()[0])
 
 
@@ -297,10 +301,10 @@ def test_a_machine_tool_from_its_table(person, hand, wizard):
         [np.degrees(row.theta), row.d, row.a, np.degrees(row.alpha), row.sign, row.sliding]
         for row in table.rows
     ]
-    shown = person.field(wizard, "dhTable")
-    fill(shown, rows)
+    table_widget = person.field(wizard, "dhTable")
+    fill(table_widget, rows)
     for column in range(6):  # a machine tool has five axes
-        shown.item(5, column).setText("")
+        table_widget.item(5, column).setText("")
     ends = [
         [*pose[:3, 3], *np.degrees(-frames.to_bryant(pose[:3, :3].T))]
         for pose in (table.before, table.after)
@@ -338,21 +342,29 @@ def test_a_machine_tool_from_its_table(person, hand, wizard):
     hand.enter(wizard, "machineTitle", "Trunnion")
     hand.enter(wizard, "poseSource", "controller")
     hand.click(wizard.button(person.widgets.QWizard.FinishButton))
-    made = machine.load("trunnion", user_machines.folders())
-    assert not made.free and made.opw is None and np.isinf(made.limits("maker").upper[4])
-    np.testing.assert_allclose(
-        made.max_acceleration, [np.inf, np.inf, 900, np.radians(400), np.inf]
+    new_machine = machine.load("trunnion", user_machines.folders())
+    assert (
+        not new_machine.free
+        and new_machine.opw is None
+        and np.isinf(new_machine.limits("maker").upper[4])
     )
-    np.testing.assert_allclose(made.max_jerk, [np.inf, np.inf, 8000, np.radians(5000), np.inf])
-    np.testing.assert_allclose(made.chain.forward(values), tool.chain.forward(values), atol=1e-6)
+    np.testing.assert_allclose(
+        new_machine.max_acceleration, [np.inf, np.inf, 900, np.radians(400), np.inf]
+    )
+    np.testing.assert_allclose(
+        new_machine.max_jerk, [np.inf, np.inf, 8000, np.radians(5000), np.inf]
+    )
+    np.testing.assert_allclose(
+        new_machine.chain.forward(values), tool.chain.forward(values), atol=1e-6
+    )
 
 
 def test_what_a_pendant_shows_is_what_the_wizard_reads():
     arm = machine.load("fanuc-arcmate120ic")
-    shown = pendant.Shown((1,) * 6, (0.0,) * 6, pendant.HORIZONTAL)
+    convention = pendant.Shown((1,) * 6, (0.0,) * 6, pendant.HORIZONTAL)
     figures = pendant_poses(count=6)
     poses = draft.flange_poses(draft.FANUC, figures[:, 6:], arm.base, np.eye(4))
-    assert pendant.fits(pendant.deviations(arm.chain, shown, figures[:, :6], poses))
+    assert pendant.fits(pendant.deviations(arm.chain, convention, figures[:, :6], poses))
 
 
 def test_what_was_entered_is_not_lost_without_a_question(person, hand, wizard):
@@ -362,19 +374,19 @@ def test_what_was_entered_is_not_lost_without_a_question(person, hand, wizard):
     wizard = person.panel(NAME)
     hand.click(person.field(wizard, "source"))
     hand.do("key", "End", "Return")
-    asked = person.will_answer("Cancel")
+    questions = person.will_answer("Cancel")
     hand.do("key", "Escape")
-    person.until(lambda: asked, "the question")
-    assert "lost" in asked[0] and wizard.isVisible() and page(wizard) == "SourcePage"
+    person.until(lambda: questions, "the question")
+    assert "lost" in questions[0] and wizard.isVisible() and page(wizard) == "SourcePage"
     go_on(person, hand, wizard, "LimitsPage")
-    asked = person.will_answer("Cancel")
+    questions = person.will_answer("Cancel")
     hand.click(wizard.button(person.widgets.QWizard.CancelButton))
-    person.until(lambda: asked, "the question")
+    person.until(lambda: questions, "the question")
     assert wizard.isVisible() and page(wizard) == "LimitsPage"
-    asked = person.will_answer("Discard")
+    questions = person.will_answer("Discard")
     hand.click(wizard.button(person.widgets.QWizard.CancelButton))
     person.until(lambda: not person.present(person.widgets.QWizard), "the wizard to close")
-    assert len(asked) == 1
+    assert len(questions) == 1
 
 
 def test_a_robot_on_its_track_begins_with_the_robot(person, hand, wizard, tmp_path):
@@ -445,15 +457,15 @@ def test_a_positioner_out_of_the_urdf_of_a_whole_cell(person, hand, wizard, tmp_
     person.screenshot("machine_8_positioner")
     go_on(person, hand, wizard, "LimitsPage")
     assert person.field(wizard, "limits").rowCount() == 2
-    said = " ".join(
+    messages = " ".join(
         label.text() for label in wizard.currentPage().findChildren(person.widgets.QLabel)
     )
-    assert "NAME at 1400 50 -56 0 0 22.9183118052 carries part" in said
+    assert "NAME at 1400 50 -56 0 0 22.9183118052 carries part" in messages
     go_on(person, hand, wizard, "FramesPage")
     go_on(person, hand, wizard, "PosesPage")
-    given = external.load("motoman-motopos-d500")
+    expected = external.load("motoman-motopos-d500")
     values = np.array([[0, 0], [30, 90], [-100, -170]], float)
-    poses = KdlArm(given).forward(np.radians(values))
+    poses = KdlArm(expected).forward(np.radians(values))
     fill(
         person.field(wizard, "poses"),
         np.column_stack((values, draft.figures_of(draft.FANUC, poses))),
@@ -466,11 +478,14 @@ def test_a_positioner_out_of_the_urdf_of_a_whole_cell(person, hand, wizard, tmp_
     hand.enter(wizard, "machineTitle", "Table 7")
     hand.enter(wizard, "poseSource", "pendant")
     hand.click(wizard.button(person.widgets.QWizard.FinishButton))
-    made = external.load("table-7", user_machines.folders())
-    ((piece,), tilt, table) = made.bodies
+    new_positioner = external.load("table-7", user_machines.folders())
+    ((fixed_body,), tilt, table) = new_positioner.bodies
     np.testing.assert_allclose(
-        [piece.points.min(axis=0), piece.points.max(axis=0)], [[-200, -250, 0], [200, 250, 200]]
+        [fixed_body.points.min(axis=0), fixed_body.points.max(axis=0)],
+        [[-200, -250, 0], [200, 250, 200]],
     )
     assert (tilt, table) == ((), ())
     q = np.random.default_rng(3).uniform(-2, 2, (30, 2))
-    np.testing.assert_allclose(made.chain.forward(q), given.chain.forward(q), atol=1e-6)
+    np.testing.assert_allclose(
+        new_positioner.chain.forward(q), expected.chain.forward(q), atol=1e-6
+    )

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts from files: damaged ones that crash the kernel are refused, and FreeCAD's window goes on."""
+"""Parts from files: damaged files that crash the kernel are rejected, and FreeCAD's window
+continues."""
 
 import os
 import subprocess
@@ -24,7 +25,7 @@ pytestmark = pytest.mark.gui
 EXAMPLES = Path(__file__).resolve().parents[2] / "resources" / "examples"
 
 
-# what the other process is asked for; it imports this file
+# ---- functions that the other process runs; it imports this file
 
 
 def waiting(path, *_):
@@ -46,9 +47,9 @@ def endless(path):
 
 
 def growing(path):
-    held = []
+    chunks = []
     while True:
-        held.append(bytearray(10_000_000))
+        chunks.append(bytearray(10_000_000))
 
 
 @pytest.fixture(autouse=True)
@@ -59,7 +60,7 @@ def processes():
 
 @pytest.fixture
 def chosen(person, monkeypatch):
-    """Chooses a file in the dialog of the tool."""
+    """Return a function that selects a file in the dialog of the tool."""
 
     def choose(path):
         monkeypatch.setattr(
@@ -72,15 +73,19 @@ def chosen(person, monkeypatch):
 
 @pytest.fixture
 def crash(tmp_path):
-    """A STEP file that is known to crash what reads it: it does so to a FreeCAD of its own."""
-    whole = (EXAMPLES / "hemisphere.step").read_bytes()
+    """Return a STEP file that crashes its reader, as a separate FreeCAD shows."""
+    content = (EXAMPLES / "hemisphere.step").read_bytes()
     path = tmp_path / "damaged.step"
     text = f"import sys; sys.path[:] = {sys.path!r}; import FreeCAD, Part; Part.Shape().read({str(path)!r}); print('whole')"
     for seed in range(20):
-        path.write_bytes(damage.damaged(whole, "references", seed))
+        path.write_bytes(damage.damaged(content, "references", seed))
         python = kernel_process._pythons()[0]
-        ended = subprocess.run([python, "-c", text], capture_output=True, timeout=60, check=False)
-        if ended.returncode and b"whole" not in ended.stdout and b"Traceback" not in ended.stderr:
+        process = subprocess.run([python, "-c", text], capture_output=True, timeout=60, check=False)
+        if (
+            process.returncode
+            and b"whole" not in process.stdout
+            and b"Traceback" not in process.stderr
+        ):
             return path
     pytest.skip("this kernel crashes on none of them")
 
@@ -88,19 +93,23 @@ def crash(tmp_path):
 def test_a_file_that_crashes_the_kernel_is_refused_and_the_window_goes_on(
     person, chosen, crash, monkeypatch
 ):
-    told = []
+    warnings_ = []
     monkeypatch.setattr(
-        person.widgets.QMessageBox, "warning", lambda *given: told.append(given[-1])
+        person.widgets.QMessageBox, "warning", lambda *arguments: warnings_.append(arguments[-1])
     )
     chosen(crash)
-    assert len(told) == 1 and told[0].startswith(
+    assert len(warnings_) == 1 and warnings_[0].startswith(
         "damaged.step: the file is damaged: FreeCAD crashes while reading it"
-    ), told
-    assert not App.listDocuments()  # the one that was made for it is gone
-    chosen(EXAMPLES / "hemisphere.step")  # and FreeCAD is there
-    part = App.ActiveDocument.Objects[0]
-    assert len(told) == 1 and part.Label == "hemisphere" and part.Shape.isValid()
-    assert [obj.Name for obj in person.gui.Selection.getSelection()] == [part.Name]
+    ), warnings_
+    assert not App.listDocuments()  # the document created for it is closed
+    chosen(EXAMPLES / "hemisphere.step")  # FreeCAD still works
+    imported_part = App.ActiveDocument.Objects[0]
+    assert (
+        len(warnings_) == 1
+        and imported_part.Label == "hemisphere"
+        and imported_part.Shape.isValid()
+    )
+    assert [obj.Name for obj in person.gui.Selection.getSelection()] == [imported_part.Name]
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     person.until(
@@ -111,12 +120,12 @@ def test_a_file_that_crashes_the_kernel_is_refused_and_the_window_goes_on(
 
 
 def test_a_table_of_points_is_opened_and_laid_as_beads(person, chosen, tmp_path):
-    # not above: the other process imports this file, and its memory is measured
+    # not at the top: the other process imports this file, and the test measures its memory
     from freecad_am.gui.tools import commands
 
     (tmp_path / "beads.csv").write_text("x,y,z\n0,0,0\n40,0,0\n40,30,0\n", encoding="utf-8")
     chosen(tmp_path / "beads.csv")
-    assert ".csv" in commands.ENDINGS  # of the files that the dialog shows
+    assert ".csv" in commands.ENDINGS  # one of the endings in the dialog
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     person.until(
@@ -136,25 +145,29 @@ def test_what_is_opened_in_the_window_is_what_the_commands_read(person, tmp_path
     import MeshPart
     import Part
 
-    here = Part.Shape()
-    here.read(str(EXAMPLES / "hemisphere.step"))
+    local_shape = Part.Shape()
+    local_shape.read(str(EXAMPLES / "hemisphere.step"))
     document = App.newDocument("Files")
     assert (
-        read_shape(EXAMPLES / "hemisphere.step").exportBrepToString() == here.exportBrepToString()
+        read_shape(EXAMPLES / "hemisphere.step").exportBrepToString()
+        == local_shape.exportBrepToString()
     )  # to the last digit
-    assert api.open_part(document, str(EXAMPLES / "hemisphere.step")).Shape.Volume == here.Volume
+    assert (
+        api.open_part(document, str(EXAMPLES / "hemisphere.step")).Shape.Volume
+        == local_shape.Volume
+    )
     in_unit(tmp_path / "inches.step", Part.makeCone(20, 10, 30), 25.4, "INCH")
     assert api.open_part(
         document, str(tmp_path / "inches.step")
     ).Shape.BoundBox.ZLength == pytest.approx(762.0)
-    MeshPart.meshFromShape(here, 1.0).write(str(tmp_path / "bowl.stl"))
+    MeshPart.meshFromShape(local_shape, 1.0).write(str(tmp_path / "bowl.stl"))
     assert api.open_part(document, str(tmp_path / "bowl.stl"), scale=2.0).Mesh.CountFacets > 10
     document.saveAs(str(tmp_path / "both.FCStd"))
     App.closeDocument(document.Name)
     document = App.newDocument("Files")
     again = api.open_part(document, str(tmp_path / "both.FCStd"), "hemisphere")
     assert (
-        again.Shape.Volume == pytest.approx(here.Volume, rel=1e-12)
+        again.Shape.Volume == pytest.approx(local_shape.Volume, rel=1e-12)
         and len(App.listDocuments()) == 1
     )
 
@@ -167,12 +180,12 @@ def test_limits_are_told_in_the_window_too(person, monkeypatch, tmp_path, read, 
     monkeypatch.setattr(sandbox, "SECONDS", 1.0)
     monkeypatch.setattr(sandbox, "MEMORY", 100.0)
     monkeypatch.setattr(sandbox, "WALL_CLOCK_FACTOR", 2.0 if read is waiting else 100.0)
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as error_info:
         sandbox.read_in_sandbox(read, tmp_path / "part.step")
-    assert (told.value.code, told.value.where) == (
+    assert (error_info.value.code, error_info.value.where) == (
         "BAD_FILE",
         "part.step",
-    ) and says in told.value.message
+    ) and says in error_info.value.message
 
 
 def test_reading_that_takes_long_can_be_cancelled_and_leaves_no_process(
@@ -181,13 +194,13 @@ def test_reading_that_takes_long_can_be_cancelled_and_leaves_no_process(
     from freecad_am.brep.files import read
 
     monkeypatch.setattr(read, "_shape", waiting)
-    part = tmp_path / "long.step"
-    part.write_text("x", encoding="utf-8")
+    path = tmp_path / "long.step"
+    path.write_text("x", encoding="utf-8")
     document = App.newDocument("Files")
 
     def cancel():
         box = person.window.findChild(person.widgets.QProgressDialog, "RoboticAM_Progress")
-        if box is not None and part.with_suffix(".pid").exists():
+        if box is not None and path.with_suffix(".pid").exists():
             box.findChild(person.widgets.QPushButton, "cancel").click()
             timer.stop()
 
@@ -196,8 +209,8 @@ def test_reading_that_takes_long_can_be_cancelled_and_leaves_no_process(
     timer.start(50)
     person.watch.awaited = (person.widgets.QProgressDialog,)
     with pytest.raises(Cancelled):
-        api.open_part(document, str(part))
+        api.open_part(document, str(path))
     person.watch.awaited = ()
-    pid = int(part.with_suffix(".pid").read_text())
+    pid = int(path.with_suffix(".pid").read_text())
     person.until(lambda: not Path(f"/proc/{pid}").exists(), "the process to end", 10)
     assert not document.Objects

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plots by mouse and keys: every picture is seen, zoomed, read, saved; changes, deletions, closed documents are followed."""
+"""Plots by mouse and keys: every picture is shown, zoomed, read and saved, and follows changes,
+deletions and closed documents."""
 
 import csv
 
@@ -31,19 +32,19 @@ def panel(person, planned):
     person.click("RoboticAM_Plots")
     panel = person.panel(docks.NAME)
     person.field(panel, "over").setCurrentIndex(0)
-    seen(person)
+    wait_until_drawn(person)
     yield panel
     panel.close()
 
 
-def seen(person):
+def wait_until_drawn(person):
     dock = docks.only.dock
     timers = (dock.soon.timer, dock.changed.timer)
     person.until(
         lambda: (
             dock.building.worker is None
             and dock.canvas.ready
-            and not any(one.isActive() for one in timers)
+            and not any(timer.isActive() for timer in timers)
         ),
         "the picture",
         20,
@@ -52,30 +53,31 @@ def seen(person):
     return dock
 
 
-def shown(person, as_wanted):
-    """The range of the first chart, once it is as wanted."""
+def wait_for_range(person, as_wanted):
+    """Return the range of the first chart when it is as expected."""
     person.until(
         lambda: as_wanted(*docks.only.dock.canvas.view.places[0].across),
         "the range that is shown",
         5,
     )
-    return seen(person).canvas.view.places[0].across
+    return wait_until_drawn(person).canvas.view.places[0].across
 
 
 def take(person, panel, name):
     box = person.field(panel, "picture")
     box.setCurrentIndex(box.findData(name))
-    return seen(person)
+    return wait_until_drawn(person)
 
 
 def colours(person, widget, least=80):
-    """How many pixels of a widget have the colour of a curve, of a limit, of bars or of beads over each other; with a lower
-    `least` difference of red, green and blue also of single beads."""
+    """Return how many pixels of a widget have the colour of a curve, of a limit, of bars or of
+    overlapping beads; with a smaller `least` difference of red, green and blue also of single
+    beads."""
     image = widget.grab().toImage().convertToFormat(person.widgets.QImage.Format_RGB32)
-    seen = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)[
+    pixels = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(image.height(), -1, 4)[
         :, : image.width(), :3
     ]
-    return int((np.ptp(seen.astype(int), axis=2) > least).sum())
+    return int((np.ptp(pixels.astype(int), axis=2) > least).sum())
 
 
 def test_every_picture_is_seen(person, planned, panel):
@@ -107,40 +109,40 @@ def test_every_picture_is_seen(person, planned, panel):
 def test_layers_chosen_of_one_job_are_not_those_of_another_with_its_names(
     person, planned, coarse, panel
 ):
-    first, last = person.field(panel, "from"), person.field(panel, "to")
-    last.setValue(1)
-    first.setValue(1)
-    seen(person)
+    from_box, to_box = person.field(panel, "from"), person.field(panel, "to")
+    to_box.setValue(1)
+    from_box.setValue(1)
+    wait_until_drawn(person)
     names = planned.Document.Name, planned.Name
     App.closeDocument(planned.Document.Name)
     document = App.newDocument(names[0])
-    part = document.addObject("Part::Sphere", "Sphere")
-    part.Radius, part.Angle1 = 45, 0
+    sphere = document.addObject("Part::Sphere", "Sphere")
+    sphere.Radius, sphere.Angle1 = 45, 0
     document.recompute()
-    other = api.make_all(document, part)[3]
-    assert (other.Document.Name, other.Name) == names
-    docks.show(other)
-    seen(person)
-    assert (first.value(), last.value()) == (0, other.Toolpath.Layers - 1)
+    other_path = api.make_all(document, sphere)[3]
+    assert (other_path.Document.Name, other_path.Name) == names
+    docks.show(other_path)
+    wait_until_drawn(person)
+    assert (from_box.value(), to_box.value()) == (0, other_path.Toolpath.Layers - 1)
 
 
 def test_zoom_move_and_read_by_mouse(person, hand, planned, panel):
     dock = take(person, panel, "angles")
     canvas = dock.canvas
-    whole = canvas.view.places[0].across
-    place = canvas.view.places[0]
+    full_range = canvas.view.places[0].across
+    frame = canvas.view.places[0]
 
-    def at(share, up=0.5):
+    def position(share, up=0.5):
         where = canvas.mapToGlobal(
             person.core.QPoint(
-                int(place.left + share * place.width), int(place.top + (1 - up) * place.height)
+                int(frame.left + share * frame.width), int(frame.top + (1 - up) * frame.height)
             )
         )
         return where.x(), where.y()
 
-    hand.do("mousemove", *at(0.25))
+    hand.do("mousemove", *position(0.25))
     person.until(lambda: person.field(panel, "reading").text(), "what is pointed at", 5)
-    chart, x = dock.picture.charts[0], whole[0] + 0.25 * (whole[1] - whole[0])
+    chart, x = dock.picture.charts[0], full_range[0] + 0.25 * (full_range[1] - full_range[0])
     curve = chart.curves[0]
     nearest = int(np.abs(curve.x - x).argmin())
     text = person.field(panel, "reading").text()
@@ -148,60 +150,66 @@ def test_zoom_move_and_read_by_mouse(person, hand, planned, panel):
     assert abs(value - curve.y[max(nearest - 2, 0) : nearest + 3]).min() < 1e-3 and text.startswith(
         "layer "
     )
-    hand.do("mousemove", *at(0.5), "click", 4, "click", 4)
-    low, high = shown(
+    hand.do("mousemove", *position(0.5), "click", 4, "click", 4)
+    low, high = wait_for_range(
         person,
-        lambda low, high: high - low == pytest.approx((whole[1] - whole[0]) / 1.25**2, rel=1e-6),
+        lambda low, high: (
+            high - low == pytest.approx((full_range[1] - full_range[0]) / 1.25**2, rel=1e-6)
+        ),
     )
     assert canvas.view.places[1].across == (low, high)  # all charts together
-    hand.do("mousemove", *at(0.5), "mousedown", 1, "mousemove", *at(0.4), "mouseup", 1)
-    shown(person, lambda start, end: start > low and end - start == pytest.approx(high - low))
+    hand.do("mousemove", *position(0.5), "mousedown", 1, "mousemove", *position(0.4), "mouseup", 1)
+    wait_for_range(
+        person, lambda start, end: start > low and end - start == pytest.approx(high - low)
+    )
     hand.click(person.field(panel, "whole"))
-    shown(person, lambda *ends: ends == whole)
+    wait_for_range(person, lambda *ends: ends == full_range)
     hand.click(person.field(panel, "rectangle"))
     hand.do(
         "mousemove",
-        *at(0.3, 0.9),
+        *position(0.3, 0.9),
         "mousedown",
         1,
         "mousemove",
-        *at(0.5, 0.5),
+        *position(0.5, 0.5),
         "mousemove",
-        *at(0.6, 0.2),
+        *position(0.6, 0.2),
         "mouseup",
         1,
     )
-    width = whole[1] - whole[0]
-    shown(
+    width = full_range[1] - full_range[0]
+    wait_for_range(
         person,
         lambda *ends: (
-            ((np.array(ends) - whole[0]) / width).tolist() == pytest.approx([0.3, 0.6], abs=0.01)
+            ((np.array(ends) - full_range[0]) / width).tolist()
+            == pytest.approx([0.3, 0.6], abs=0.01)
         ),
     )
     assert 0 in canvas.view.up
     person.screenshot("plots_zoomed")
     hand.click(person.field(panel, "rectangle"))
     hand.click(person.field(panel, "whole"))
-    shown(person, lambda *ends: ends == whole)
+    wait_for_range(person, lambda *ends: ends == full_range)
     hand.click(person.field(panel, "back"))
-    shown(
+    wait_for_range(
         person,
         lambda *ends: (
-            ((np.array(ends) - whole[0]) / width).tolist() == pytest.approx([0.3, 0.6], abs=0.01)
+            ((np.array(ends) - full_range[0]) / width).tolist()
+            == pytest.approx([0.3, 0.6], abs=0.01)
         ),
     )
-    hand.do("mousemove", *at(0.5), "click", "--repeat", 2, "--delay", 50, 1)
-    shown(person, lambda *ends: ends == whole)
+    hand.do("mousemove", *position(0.5), "click", "--repeat", 2, "--delay", 50, 1)
+    wait_for_range(person, lambda *ends: ends == full_range)
 
 
 def test_layers_path_and_files(person, panel, planned, tmp_path, monkeypatch):
     take(person, panel, "deposit")
     person.field(panel, "from").setValue(1)
     person.field(panel, "to").setValue(2)
-    dock = seen(person)
+    dock = wait_until_drawn(person)
     assert set(dock.picture.charts[0].curves[0].layer.tolist()) == {1, 2}
     person.choose(panel, "over", "path")
-    dock = seen(person)
+    dock = wait_until_drawn(person)
     assert dock.picture.charts[0].x.name == "path"
     person.screenshot("plots_two_layers")
     for ending, begins in (
@@ -252,18 +260,21 @@ def test_a_stale_plot_is_not_saved(person, planned, panel, monkeypatch, tmp_path
 def test_changes_are_followed(person, planned, panel):
     dock = take(person, panel, "angles")
     toolpath, doc = planned.Toolpath, planned.Document
-    before = dock.source[1].times.total
+    original_total = dock.source[1].times.total
     toolpath.TravelSpeed = "3 mm/s"
     person.idle(0.1)
-    seen(person)
+    wait_until_drawn(person)
     assert "recompute" in person.field(panel, "note").text()
     doc.recompute()
     person.idle(0.5)
-    seen(person)
-    assert person.field(panel, "note").text() == "" and dock.source[1].times.total > 1.5 * before
+    wait_until_drawn(person)
+    assert (
+        person.field(panel, "note").text() == ""
+        and dock.source[1].times.total > 1.5 * original_total
+    )
     person.select(toolpath)
     person.idle(0.3)
-    seen(person)
+    wait_until_drawn(person)
     assert person.field(panel, "plotted").currentText() == toolpath.Label
     assert dock.picture is None and "no joints" in dock.canvas.text
     take(person, panel, "spacing")
@@ -277,16 +288,16 @@ def test_changes_are_followed(person, planned, panel):
 
 def test_closed_documents_and_long_beads(person, planned, panel):
     dock = take(person, panel, "jerks")
-    other = App.newDocument("Other")
+    other_document = App.newDocument("Other")
     person.idle(0.4)
     assert dock.picture is None
-    App.closeDocument(other.Name)
+    App.closeDocument(other_document.Name)
     App.setActiveDocument(planned.Document.Name)
     person.idle(0.4)
-    seen(person)
+    wait_until_drawn(person)
     assert dock.picture is not None
     box = person.field(panel, "picture")
-    for index in list(range(box.count())) * 2:  # quicker than pictures are drawn
+    for index in list(range(box.count())) * 2:  # faster than pictures are drawn
         box.setCurrentIndex(index)
         person.idle(0.02)
     App.closeDocument(planned.Document.Name)
@@ -296,7 +307,7 @@ def test_closed_documents_and_long_beads(person, planned, panel):
 
 
 def test_that_there_is_nothing_to_plot_is_seen(person, planned, panel):
-    """Also where many charts, more than there was room for, were there before."""
+    """The note also replaces many charts that did not fit before."""
     canvas = take(person, panel, "angles").canvas
     assert canvas.minimumHeight() == 6 * canvases.PER_CHART
     App.closeDocument(planned.Document.Name)
@@ -311,10 +322,10 @@ def test_that_there_is_nothing_to_plot_is_seen(person, planned, panel):
 
 def test_a_dock_that_was_open_before_the_job_goes_on_to_its_joint_path(person, planned, panel):
     document = App.newDocument("Later")
-    part = document.addObject("Part::Sphere", "Sphere")
-    part.Radius, part.Angle1 = 45, 0
+    sphere = document.addObject("Part::Sphere", "Sphere")
+    sphere.Radius, sphere.Angle1 = 45, 0
     document.recompute()
-    feature = api.make_feature(document, part, layer_height=15)
+    feature = api.make_feature(document, sphere, layer_height=15)
     cell = api.make_cell(document, limits="paper")
     toolpath = api.make_toolpath(document, feature, cell, between_layers_wait=2.0)
     plotted = person.field(panel, "plotted")
@@ -330,23 +341,23 @@ def test_a_dock_that_was_open_before_the_job_goes_on_to_its_joint_path(person, p
 
 def test_a_solid_in_plane_layers_is_seen_layer_by_layer(person):
     document = App.newDocument("Filled")
-    part = document.addObject("Part::Feature", "Block")
-    part.Shape = Part.makeBox(60, 40, 22).cut(Part.makeCylinder(9, 22, App.Vector(40, 20, 0)))
+    block = document.addObject("Part::Feature", "Block")
+    block.Shape = Part.makeBox(60, 40, 22).cut(Part.makeCylinder(9, 22, App.Vector(40, 20, 0)))
     document.recompute()
     feature = api.make_solid_feature(
-        document, part, layer_height=5, chord_error=0.1, bead_spacing=5
+        document, block, layer_height=5, chord_error=0.1, bead_spacing=5
     )
     docks.show(api.make_toolpath(document, feature))
     panel = person.panel(docks.NAME)
     dock = take(person, panel, "volumes")
     volume = dock.picture.charts[0]
-    assert 1000.0 * volume.curves[0].y.sum() == pytest.approx(part.Shape.Volume, rel=2e-3)
+    assert 1000.0 * volume.curves[0].y.sum() == pytest.approx(block.Shape.Volume, rel=2e-3)
     assert colours(person, dock.canvas) > 200
     person.screenshot("plots_volumes")
     person.field(panel, "to").setValue(2)
     take(person, panel, "section")
     names = [curve.name for curve in dock.picture.charts[0].curves]
     assert names.count("part") == 1 and "bead" in names
-    # beads fill the part but for a few gaps, and hardly lie over each other
+    # beads fill the part except for a few gaps, and hardly overlap
     assert colours(person, dock.canvas) < 2000 < 30000 < colours(person, dock.canvas, 40)
     person.screenshot("plots_section")

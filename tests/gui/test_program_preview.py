@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a program shows how it begins and what it is in all, and what the controller refuses as it is typed."""
+"""The panel of a program shows its first lines and totals, and what the controller rejects while
+the user types."""
 
 import dataclasses
 import re
@@ -19,18 +20,18 @@ PANEL = "RoboticAM_Program"
 
 @pytest.fixture
 def joint_path(person, hemisphere):
-    """A joint path that can be carried out."""
+    """Return a feasible joint path."""
     document = hemisphere.Document
     cell = api.make_cell(document)
     toolpath = api.make_toolpath(
         document, api.make_feature(document, hemisphere, layer_height=10), cell
     )
-    made = api.make_joint_path(document, toolpath, cell)
+    path = api.make_joint_path(document, toolpath, cell)
     person.idle()
-    return made
+    return path
 
 
-def told(person, panel, words, seconds=20):
+def wait_for_message(person, panel, words, seconds=20):
     state = person.field(panel, "preview")
     person.until(lambda: state.isVisible() and words in state.text(), words, seconds)
     return state.text()
@@ -46,15 +47,15 @@ def test_the_first_lines_are_those_that_are_written(person, hand, joint_path):
     person.click("RoboticAM_Program")
     panel = person.panel(PANEL)
     hand.enter(panel, "ProgramName", "cup")
-    text = told(person, panel, "Begins with CUP.LS.")
-    first = lines(person, panel)
+    text = wait_for_message(person, panel, "Begins with CUP.LS.")
+    first_lines = lines(person, panel)
     assert person.field(panel, "FirstLines").isVisible()
     person.screenshot("program_preview")
     hand.enter(panel, "MaxPoints", "300")
     person.until(
         lambda: any("CALL CUP01" in line for line in lines(person, panel)), "calls of parts", 20
     )
-    parts = told(person, panel, "Begins with CUP.LS.")
+    message = wait_for_message(person, panel, "Begins with CUP.LS.")
     assert document.UndoCount == steps and document.getObject("Program") is None
     begins = lines(person, panel)
     person.press("Ok")
@@ -63,10 +64,10 @@ def test_the_first_lines_are_those_that_are_written(person, hand, joint_path):
     assert len(files) > 2 and document.UndoCount == steps + 1
     assert begins == files["CUP.LS"].decode().splitlines()[:SHOWN_LINES]
     count = sum(len(content.splitlines()) for content in files.values())
-    assert f"Lines: {count}, files: {len(files)}" in parts
+    assert f"Lines: {count}, files: {len(files)}" in message
     api.change(document.Program, max_points=2000)
     written = api.result(document.Program).files["CUP.LS"].decode().splitlines()
-    assert len(first) == SHOWN_LINES and first == written[:SHOWN_LINES]
+    assert len(first_lines) == SHOWN_LINES and first_lines == written[:SHOWN_LINES]
     minutes, seconds = divmod(document.JointPath.TotalTime, 60.0)
     assert f"Lines: {len(written)}, files: 1" in text
     assert (
@@ -85,7 +86,7 @@ def test_what_the_controller_refuses_is_told_beside_its_field_as_it_is_typed(
     person.gui.runCommand("Std_Refresh")
     registry.edit(program)
     panel = person.panel(PANEL)
-    told(person, panel, "Begins with CUP.LS.")
+    wait_for_message(person, panel, "Begins with CUP.LS.")
     for fold in ("FoldInputs", "FoldStartat"):
         hand.click(person.field(panel, fold))
     for name, text, words in (
@@ -93,24 +94,24 @@ def test_what_the_controller_refuses_is_told_beside_its_field_as_it_is_typed(
         ("Post", "siemens", "does not read siemens"),
         ("StartAtLayer", "99", "there is no bead 0 in a layer 99"),
     ):
-        before = person.field(panel, name)
-        was = before.currentText() if hasattr(before, "currentText") else before.text()
+        field = person.field(panel, name)
+        was = field.currentText() if hasattr(field, "currentText") else field.text()
         hand.enter(panel, name, text)
         note = person.field(panel, f"{name}Note")
         person.until(
             lambda note=note, words=words: note.isVisible() and words in note.text(), words, 10
         )
-        told(person, panel, "see the marked field")
+        wait_for_message(person, panel, "see the marked field")
         assert (
             lines(person, panel) == [] and person.field(panel, "FirstLines").isVisible()
-        )  # no field moves away
+        )  # no field moves
         if name == "ProgramName":
             person.screenshot("program_name_refused")
         hand.enter(panel, name, was)
-        told(person, panel, "Begins with CUP.LS.")
+        wait_for_message(person, panel, "Begins with CUP.LS.")
         assert not note.isVisible()
     hand.enter(panel, "Post", "none")
-    told(person, panel, "Without a post no file is written.")
+    wait_for_message(person, panel, "Without a post no file is written.")
     person.press("Cancel")
     person.panel_closed()
     assert (program.Key, program.Status, program.ProgramName, program.Post) == (
@@ -120,7 +121,7 @@ def test_what_the_controller_refuses_is_told_beside_its_field_as_it_is_typed(
         "fanuc",
     )
     person.until(
-        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
+        lambda: not [thread for thread in threading.enumerate() if thread.name == "Robotic AM"],
         "the threads to end",
         10,
     )
@@ -130,11 +131,11 @@ def test_a_dry_run_deposits_nothing_and_a_later_start_is_shorter(person, joint_p
     person.select(joint_path)
     person.click("RoboticAM_Program")
     panel = person.panel(PANEL)
-    whole = told(person, panel, "mass: ")
+    full_text = wait_for_message(person, panel, "mass: ")
     person.type(panel, "StartAtLayer", "5")
-    person.until(lambda: told(person, panel, "mass: ") != whole, "less", 10)
+    person.until(lambda: wait_for_message(person, panel, "mass: ") != full_text, "less", 10)
     person.field(panel, "DryRun").setChecked(True)
-    told(person, panel, "dry run without deposit")
+    wait_for_message(person, panel, "dry run without deposit")
     person.press("Cancel")
     person.panel_closed()
 
@@ -144,19 +145,21 @@ def test_what_is_made_anew_beside_the_panel_is_seen_and_what_is_deleted_is_told(
     person.select(joint_path)
     person.click("RoboticAM_Program")
     panel = person.panel(PANEL)
-    before = told(person, panel, "Begins with")
+    original_text = wait_for_message(person, panel, "Begins with")
     state = person.field(panel, "preview")
     document.Feature.LayerHeight = "15 mm"
-    told(person, panel, "Joint path is out of date; the preview shows its earlier state.")
+    wait_for_message(
+        person, panel, "Joint path is out of date; the preview shows its earlier state."
+    )
     document.recompute()
     person.until(
         lambda: "Begins with" in state.text() and "out of date" not in state.text(),
         "what it is now",
         30,
     )
-    assert state.text() != before
+    assert state.text() != original_text
     document.removeObject(joint_path.Name)
-    told(person, panel, "No preview: see the marked field.")
+    wait_for_message(person, panel, "No preview: see the marked field.")
     note = person.field(panel, "InputJointPathNote")
     assert (
         note.isVisible()
@@ -174,14 +177,14 @@ def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(
     program = api.make_program(document, joint_path, name="CUP", post="fanuc")
     registry.edit(program)
     panel = person.panel(PANEL)
-    told(person, panel, "Preflight: ")
+    wait_for_message(person, panel, "Preflight: ")
     promises = person.field(panel, "Preflight")
     lines = [promises.item(row) for row in range(promises.count())]
     marks = [line.text()[0] for line in lines]
-    kept, broken, unchecked = map(marks.count, "✓✗?")
-    assert kept + broken + unchecked == len(marks)
-    assert told(
-        person, panel, f"Preflight: {kept} passed, {broken} failed, {unchecked} not checked"
+    passed, broken, unchecked = map(marks.count, "✓✗?")
+    assert passed + broken + unchecked == len(marks)
+    assert wait_for_message(
+        person, panel, f"Preflight: {passed} passed, {broken} failed, {unchecked} not checked"
     )
     text = next(line for line in lines if "The program moves the tool" in line.text())
     assert text.text().startswith("✓") and "mm" in text.text()
@@ -196,7 +199,7 @@ def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(
     person.until(lambda: joint_path.ViewObject.Proxy.shown is not None, "the path up to the place")
     assert joint_path.ViewObject.Proxy.shown[1] == layer
     person.screenshot("preflight")
-    # what is entered otherwise has not been read back
+    # a program with these new values has no read-back yet
     hand.enter(panel, "MaxPoints", "300")
     person.until(
         lambda: any(
@@ -224,7 +227,8 @@ def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(
 def test_a_new_program_is_shown_with_the_motion_that_its_controller_has(
     monkeypatch, machine, setup, preferred, shown
 ):
-    """As New Job writes it: joint moves of KRL cannot keep a speed."""
+    """The program has joint moves like New Job's, because joint moves of KRL cannot keep a
+    speed."""
     monkeypatch.setattr(suggestions.preferences, "post", lambda: preferred)
     settings = dataclasses.replace(CellParameters(), machine=machine, setup=setup)
     proxy = SimpleNamespace(parameters=lambda cell, kind: settings)

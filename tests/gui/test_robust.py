@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What may go wrong around a job: it is told in words, without a traceback and without a dialog nobody asked for."""
+"""Faults around a job give a message in words, without a traceback or an unexpected dialog."""
 
 import gc
 import json
@@ -37,7 +37,7 @@ EARLIER = Path(__file__).parent / "data" / "earlier.FCStd"
 
 @pytest.fixture
 def job(hemisphere):
-    """The document of a job of few layers."""
+    """Return the document of a job of few layers."""
     doc = hemisphere.Document
     cell, feature = (
         api.make_cell(doc, limits="paper"),
@@ -53,8 +53,8 @@ def statuses(doc):
 
 
 def use_everything(person, doc, renewed=None):
-    """Open the panel of every stage and close it again, all context menus, the path dock and the simulation; renew some, or
-    the last stage, which renews all that it is made from."""
+    """Open and close the panel of every stage, all context menus, the path dock and the simulation;
+    renew some stages, or the last one, which renews all its inputs."""
     stages = api.stages_of(doc)
     renewed = stages[-1:] if renewed is None else renewed
     for obj in stages:
@@ -64,11 +64,11 @@ def use_everything(person, doc, renewed=None):
         menu = person.widgets.QMenu()
         obj.ViewObject.Proxy.setupContextMenu(obj.ViewObject, menu)
         for action in menu.actions():
-            wanted = [
+            expected = [
                 "RoboticAM_MenuSimulate",
                 *["RoboticAM_MenuRenew"] * (obj in renewed),
-            ]  # which is a step of undo
-            if action.objectName() in wanted and action.isEnabled():
+            ]  # this is an undo step
+            if action.objectName() in expected and action.isEnabled():
                 action.trigger()
                 person.idle(0.1)
         for name in ("Colouring", "ShowMachine"):
@@ -79,8 +79,8 @@ def use_everything(person, doc, renewed=None):
                     if isinstance(value, str)
                     else [True, False]
                 )
-                for one in [*values, value]:
-                    setattr(obj.ViewObject, name, one)
+                for item in [*values, value]:
+                    setattr(obj.ViewObject, name, item)
     person.gui.runCommand("RoboticAM_Path")
     person.idle()
     for name in ("RoboticAM_PathDock", "RoboticAM_ProgramText", "RoboticAM_Simulation"):
@@ -91,12 +91,12 @@ def use_everything(person, doc, renewed=None):
 
 def test_a_deleted_part_is_missing_everywhere_and_comes_back(person, job):
     person.select(job.Sphere)
-    asked = person.will_answer("Yes")
+    questions = person.will_answer("Yes")
     person.gui.runCommand("Std_Delete")
     person.idle(0.3)
     assert (
-        len(asked) == 1 and "Feature" in asked[0]
-    )  # FreeCAD's own question, which names what needs it
+        len(questions) == 1 and "Feature" in questions[0]
+    )  # FreeCAD's own question, which names the dependants
     assert job.Feature.Status == "failed" and "Source is missing" in job.Feature.Message
     job.recompute()
     assert statuses(job) == ["up to date", *["failed"] * 4]
@@ -115,9 +115,11 @@ def test_a_deleted_stage_is_missing_and_comes_back(person, job, name):
     job.removeObject(name)
     job.commitTransaction()
     job.recompute()
-    left = [obj for obj in api.stages_of(job) if obj.Status != "up to date"]
-    assert left if name != "Cell" else [obj.Name for obj in left] == ["JointPath", "Program"]
-    assert any("is missing" in obj.Message for obj in left)
+    outdated = [obj for obj in api.stages_of(job) if obj.Status != "up to date"]
+    assert (
+        outdated if name != "Cell" else [obj.Name for obj in outdated] == ["JointPath", "Program"]
+    )
+    assert any("is missing" in obj.Message for obj in outdated)
     use_everything(person, job, renewed=())
     job.undo()
     job.recompute()
@@ -147,8 +149,8 @@ def test_a_link_whose_object_goes_is_told(person, hemisphere):
 
 
 def test_a_link_into_a_closed_document_keeps_the_result(person, hemisphere, tmp_path):
-    other = hemisphere.Document
-    other.saveAs(str(tmp_path / "pièce à côté.FCStd"))
+    source_document = hemisphere.Document
+    source_document.saveAs(str(tmp_path / "pièce à côté.FCStd"))
     doc = App.newDocument("Job")
     doc.saveAs(str(tmp_path / "job.FCStd"))
     link = doc.addObject("App::Link", "Link")
@@ -157,7 +159,7 @@ def test_a_link_into_a_closed_document_keeps_the_result(person, hemisphere, tmp_
     feature = api.make_feature(doc, link, layer_height=15)
     toolpath = api.make_toolpath(doc, feature)
     doc.save()
-    App.closeDocument(other.Name)
+    App.closeDocument(source_document.Name)
     person.idle(0.2)
     use_everything(person, doc)
     App.closeDocument(doc.Name)
@@ -187,7 +189,7 @@ def test_files_and_folders_that_cannot_be_written(person, job, tmp_path, monkeyp
         person.panel_closed()
         assert statuses(doc) == ["up to date"] * 5
         (Path(App.getTempPath()) / "no folder").write_text("a file", encoding="utf-8")
-        unwritable = str(Path(App.getTempPath()) / "no folder")  # to root, too
+        unwritable = str(Path(App.getTempPath()) / "no folder")  # for root too
         monkeypatch.setattr(
             person.widgets.QFileDialog,
             "getExistingDirectory",
@@ -222,10 +224,11 @@ def test_a_document_closed_while_a_panel_is_open(person, job, command):
 
 @pytest.mark.long
 def test_closed_panels_leave_nothing_behind(person, job, coarse):
-    """Fields are gone with their panel, not when Python collects cycles, or never: they would be taken for later ones."""
+    """Fields disappear with their panel, not when Python collects cycles, or never: otherwise they
+    would be mistaken for later ones."""
 
     class Wrappers(dict):
-        """Whether a type is one of Qt's, asked once: there are a million objects."""
+        """Remember whether a type is one of Qt's, because there are a million objects."""
 
         def __missing__(self, kind):
             return self.setdefault(kind, issubclass(kind, person.core.QObject))
@@ -236,24 +239,27 @@ def test_closed_panels_leave_nothing_behind(person, job, coarse):
         return [obj for obj in gc.get_objects() if wraps[type(obj)]]
 
     def dead():
-        """Their types: who has them has the rest of their panel."""
-        held = [*(one() for one in old), *wrappers()]
+        """Return the types of deleted widgets that Python still holds; a holder keeps the rest of
+        their panel too."""
+        wrappers_held = [*(reference() for reference in old), *wrappers()]
         return [
-            type(obj).__name__ for obj in held if obj is not None and not person.qt.isValid(obj)
+            type(obj).__name__
+            for obj in wrappers_held
+            if obj is not None and not person.qt.isValid(obj)
         ]
 
     def press(name):
-        """Not by what the main window finds, which it keeps."""
-        wanted = getattr(person.widgets.QDialogButtonBox, name)
+        """Press a button without asking the main window, which would keep what it finds."""
+        button_kind = getattr(person.widgets.QDialogButtonBox, name)
         boxes = [
             box
             for box in person.widgets.QApplication.allWidgets()
             if isinstance(box, person.widgets.QDialogButtonBox)
         ]
         next(
-            box.button(wanted)
+            box.button(button_kind)
             for box in boxes
-            if box.isVisible() and box.button(wanted) is not None
+            if box.isVisible() and box.button(button_kind) is not None
         ).click()
         person.idle()
 
@@ -261,41 +267,46 @@ def test_closed_panels_leave_nothing_behind(person, job, coarse):
     gc.collect()
     gc.disable()
     old = [weakref.ref(obj) for obj in wrappers()]
-    gc.freeze()  # what is there, a million objects, is looked through once; by its wrappers from now on
+    gc.freeze()  # scan the million existing objects once; from now on only new wrappers
     try:
-        before = len(dead())
+        dead_count = len(dead())
         for command in (*TOOLS, "ExportPath", "Inspect"):
             for standard_button in ("Cancel", "Ok"):
                 person.select(job.Sphere)
                 person.click(f"RoboticAM_{command}")
-                person.idle(0.5)  # for what is done a moment later
+                person.idle(0.5)  # for deferred actions
                 press(standard_button)
-                if person.gui.Control.activeDialog():  # OK was refused
+                if person.gui.Control.activeDialog():  # OK was rejected
                     press("Cancel")
                 person.panel_closed()
-                for stage in api.stages_of(job):  # what was made new, for its toolpath to be quick
+                # delete the new stages, to keep their toolpath fast
+                for stage in api.stages_of(job):
                     if getattr(stage, "LayerHeight", 15) != 15:
                         stage.LayerHeight = 15
-                left = dead()
-                for _ in range(20):  # threads may be at work that were cancelled
-                    if len(left) <= before:
+                remaining = dead()
+                for _ in range(20):  # cancelled threads may still run
+                    if len(remaining) <= dead_count:
                         break
                     person.idle(0.2)
-                    left = dead()
-                assert len(left) <= before, (command, standard_button, set(left[before:]))
+                    remaining = dead()
+                assert len(remaining) <= dead_count, (
+                    command,
+                    standard_button,
+                    set(remaining[dead_count:]),
+                )
     finally:
         gc.unfreeze()
         gc.enable()
 
 
 def test_a_document_closed_while_its_part_is_looked_at(person, hemisphere, monkeypatch):
-    """What comes of it belongs to an object that is gone, and so does what is chosen afterwards."""
-    found = job_proposal.JobProposal("revolution", "", (Pick(hemisphere),))
+    """The result belongs to a deleted object, and so do later choices."""
+    proposal = job_proposal.JobProposal("revolution", "", (Pick(hemisphere),))
     closed = threading.Event()
 
     def slowly():
         closed.wait(20)
-        return found
+        return proposal
 
     monkeypatch.setattr(job_proposal, "proposal", lambda picks, bead_width: slowly)
     person.select(hemisphere)
@@ -304,7 +315,7 @@ def test_a_document_closed_while_its_part_is_looked_at(person, hemisphere, monke
     App.newDocument("Other")
     App.closeDocument(hemisphere.Document.Name)
     kind = person.field(panel, "Kind")
-    kind.activated.emit(kind.currentIndex())  # before the panel goes too
+    kind.activated.emit(kind.currentIndex())  # before the panel closes too
     person.press("Ok")
     closed.set()
     person.panel_closed()
@@ -334,7 +345,7 @@ def test_a_machine_file_that_is_gone(person, hemisphere, coarse, tmp_path, monke
     person.idle(0.5)
     assert (
         person.field(person.panel("RoboticAM_NewJob"), "Machine").currentText() == "mine"
-    )  # as the cell before
+    )  # like the cell before
     person.press("Ok")
     assert "mine" in person.panel_error(person.panel("RoboticAM_NewJob"))
     person.press("Cancel")
@@ -343,34 +354,34 @@ def test_a_machine_file_that_is_gone(person, hemisphere, coarse, tmp_path, monke
 
 
 def test_two_documents_at_once(person, hemisphere, coarse):
-    one, other = hemisphere.Document, App.newDocument("Other")
-    ball = other.addObject("Part::Sphere", "Ball")
+    first_document, second_document = hemisphere.Document, App.newDocument("Other")
+    ball = second_document.addObject("Part::Sphere", "Ball")
     ball.Angle1 = 0
-    other.recompute()
-    App.setActiveDocument(one.Name)
-    person.gui.ActiveDocument = person.gui.getDocument(one.Name)
+    second_document.recompute()
+    App.setActiveDocument(first_document.Name)
+    person.gui.ActiveDocument = person.gui.getDocument(first_document.Name)
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    App.setActiveDocument(other.Name)
-    person.gui.ActiveDocument = person.gui.getDocument(other.Name)
+    App.setActiveDocument(second_document.Name)
+    person.gui.ActiveDocument = person.gui.getDocument(second_document.Name)
     person.select(ball)
     person.idle(0.3)
     assert person.field(panel, "Source").text() == hemisphere.Label
     person.as_revolution(panel)
     person.press("Ok")
     person.panel_closed()
-    assert statuses(one) == ["up to date"] * 5 and statuses(other) == []
+    assert statuses(first_document) == ["up to date"] * 5 and statuses(second_document) == []
     person.select(ball)
     person.click("RoboticAM_NewJob")
     person.idle(0.5)
     person.as_revolution()
     person.press("Ok")
     person.panel_closed()
-    assert len(statuses(other)) >= 4
-    other.undo()
-    assert statuses(other) == [] and statuses(one) == ["up to date"] * 5
-    use_everything(person, one)
+    assert len(statuses(second_document)) >= 4
+    second_document.undo()
+    assert statuses(second_document) == [] and statuses(first_document) == ["up to date"] * 5
+    use_everything(person, first_document)
 
 
 @pytest.mark.parametrize("whole", [True, False])
@@ -379,26 +390,26 @@ def test_a_job_copied_into_another_document(person, hemisphere, coarse, whole):
     doc = hemisphere.Document
     api.make_all(doc, hemisphere)
     group = next(obj for obj in doc.Objects if is_group(obj))
-    other = App.newDocument("Copy")
+    target = App.newDocument("Copy")
     if whole:
-        other.copyObject([group], True)  # with what it depends on
+        target.copyObject([group], True)  # with its dependencies
         person.idle()
-        other.recompute()
-        assert statuses(other) == ["up to date"] * 5 and len(api.stages_of(other)) == 5
-        copied = next(obj for obj in other.Objects if is_group(obj))
-        assert {obj.Name for obj in copied.Group} == {obj.Name for obj in api.stages_of(other)}
-        assert all(link.Document == other for obj in api.stages_of(other) for link in obj.OutList)
+        target.recompute()
+        assert statuses(target) == ["up to date"] * 5 and len(api.stages_of(target)) == 5
+        copied = next(obj for obj in target.Objects if is_group(obj))
+        assert {obj.Name for obj in copied.Group} == {obj.Name for obj in api.stages_of(target)}
+        assert all(link.Document == target for obj in api.stages_of(target) for link in obj.OutList)
     else:
-        other.copyObject([doc.JointPath], False)
+        target.copyObject([doc.JointPath], False)
         person.idle()
-        other.recompute()
-        assert [obj.Proxy.kind for obj in api.stages_of(other)] == ["joint path"]
-        assert other.JointPath.Status == "failed" and "is missing" in other.JointPath.Message
-    use_everything(person, other)
+        target.recompute()
+        assert [obj.Proxy.kind for obj in api.stages_of(target)] == ["joint path"]
+        assert target.JointPath.Status == "failed" and "is missing" in target.JointPath.Message
+    use_everything(person, target)
     assert statuses(doc) == ["up to date"] * 5
     App.closeDocument(doc.Name)
     person.idle()
-    use_everything(person, other)
+    use_everything(person, target)
 
 
 @pytest.mark.long
@@ -437,7 +448,8 @@ def test_undo_and_redo_across_recomputes(person, job):
 
 
 def test_a_document_of_an_earlier_version(person, tmp_path):
-    """Saved by the window of an earlier commit: it opens with its results, can be used at once, and is renewed."""
+    """The window of an earlier commit saved it: it opens with its results, is usable at once, and
+    can be renewed."""
     path = str(tmp_path / "earlier.FCStd")
     shutil.copy(EARLIER, path)
     doc = App.openDocument(path)
@@ -455,7 +467,7 @@ def test_a_document_of_an_earlier_version(person, tmp_path):
         )
     assert (
         len(named) == 5 and named <= sys.modules.keys()
-    )  # view providers are found, under whatever name they had
+    )  # view providers are found, under any former name
     assert len(api.result(doc.Toolpath).layers) == doc.Toolpath.Layers > 0
     use_everything(person, doc)
     doc.recompute()
@@ -472,9 +484,9 @@ def test_a_document_of_an_earlier_version(person, tmp_path):
 @pytest.mark.parametrize("text", ["2,5 mm", "2,5", "0,25 cm"])
 @pytest.mark.always("0,25 cm", "2,5")
 def test_decimals_with_a_comma(person, hemisphere, text):
-    before = person.core.QLocale()
+    original_locale = person.core.QLocale()
     french = person.core.QLocale(person.core.QLocale.French, person.core.QLocale.France)
-    person.core.QLocale.setDefault(french)  # both as FreeCAD does where its language is French
+    person.core.QLocale.setDefault(french)  # both as FreeCAD sets them for French
     person.window.setLocale(french)
     try:
         person.select(hemisphere)
@@ -487,9 +499,9 @@ def test_decimals_with_a_comma(person, hemisphere, text):
         assert abs(doc.Feature.LayerHeight.Value - 2.5) < 1e-12
         undo = doc.UndoCount
         person.double_click(doc.Feature)
-        person.press("Ok")  # what is shown is read as what it was
+        person.press("Ok")  # the shown values are read as the original ones
         person.panel_closed()
         assert abs(doc.Feature.LayerHeight.Value - 2.5) < 1e-12 and doc.UndoCount == undo
     finally:
-        person.core.QLocale.setDefault(before)
-        person.window.setLocale(before)
+        person.core.QLocale.setDefault(original_locale)
+        person.window.setLocale(original_locale)

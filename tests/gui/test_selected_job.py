@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Two jobs in a document: tools are for the one that is selected, not for the one that was made last."""
+"""With two jobs in a document, tools act on the selected one, not on the newest."""
 
 import FreeCAD as App
 import pytest
@@ -16,36 +16,36 @@ KINDS = ("cell", "feature", "toolpath", "joint path")
 
 @pytest.fixture
 def stages(person, hemisphere):
-    """The stages, by kind, of two jobs of few layers on one part."""
+    """Return the stages, by kind, of two jobs of few layers on one part."""
     doc = hemisphere.Document
-    made = []
+    job_stages = []
     for name in ("First", "Second"):
         cell, feature = (
             api.make_cell(doc, limits="paper"),
             api.make_feature(doc, hemisphere, layer_height=15),
         )
         toolpath = api.make_toolpath(doc, feature, cell)
-        made.append(
+        job_stages.append(
             dict(zip(KINDS, (cell, feature, toolpath, api.make_joint_path(doc, toolpath, cell))))
         )
-        for kind, stage in made[-1].items():
+        for kind, stage in job_stages[-1].items():
             stage.Label = f"{name} {kind}"
     person.open_workbench()
-    return made
+    return job_stages
 
 
 @pytest.fixture
 def jobs(stages):
-    """The groups of the two jobs."""
+    """Return the groups of the two jobs."""
     return [
-        grouped(of["cell"].Document, name, list(of.values()))
-        for name, of in zip(("First", "Second"), stages)
+        grouped(job_stages["cell"].Document, name, list(job_stages.values()))
+        for name, job_stages in zip(("First", "Second"), stages)
     ]
 
 
 @pytest.fixture
 def opened(monkeypatch):
-    """The labels of what tools without a panel open."""
+    """Return the labels of the stages that tools without a panel open."""
     labels = []
     monkeypatch.setattr(simulation, "simulate_object", lambda obj: labels.append(obj.Label))
     monkeypatch.setattr(spin_map, "show", lambda obj: labels.append(obj.Label))
@@ -53,13 +53,13 @@ def opened(monkeypatch):
 
 
 def inputs_of(person, command, panel, *links):
-    """What a panel proposes for its links."""
+    """Return the links that a panel proposes."""
     person.click(command)
     form = person.panel(panel)
-    shown = [person.field(form, f"Input{link}").currentText() for link in links]
+    labels = [person.field(form, f"Input{link}").currentText() for link in links]
     person.press("Cancel")
     person.panel_closed()
-    return shown
+    return labels
 
 
 @pytest.mark.parametrize("which", [0, 1])
@@ -76,8 +76,8 @@ def test_tools_take_the_stages_of_the_job_that_is_selected(person, jobs, which):
     person.panel_closed()
     person.click("RoboticAM_JointPath")
     panel = person.panel("RoboticAM_JointPath")
-    shown = [person.field(panel, f"Input{link}").currentText() for link in ("Toolpath", "Cell")]
-    assert shown == [f"{name} toolpath", f"{name} cell"]
+    labels = [person.field(panel, f"Input{link}").currentText() for link in ("Toolpath", "Cell")]
+    assert labels == [f"{name} toolpath", f"{name} cell"]
     person.press("Cancel")
     person.panel_closed()
     person.click("RoboticAM_Inspect")
@@ -105,14 +105,14 @@ def test_tools_take_the_stages_of_the_job_that_is_selected(person, jobs, which):
 def test_a_stage_stands_for_its_job(person, stages, opened, request, in_groups):
     if in_groups:
         request.getfixturevalue("jobs")
-    for name, of in zip(("First", "Second"), stages):
+    for name, job_stages in zip(("First", "Second"), stages):
         for kind in KINDS:
             opened.clear()
-            tools_take(person, of[kind], kind, name, opened)
+            tools_take(person, job_stages[kind], kind, name, opened)
 
 
 def tools_take(person, stage, kind, name, opened):
-    """Every tool proposes what is of the job of the stage that is selected."""
+    """Assert that every tool proposes stages of the job of the selected stage."""
     person.select(stage)
     person.click("RoboticAM_Simulate")
     person.click("RoboticAM_SpinMap")
@@ -120,8 +120,8 @@ def tools_take(person, stage, kind, name, opened):
     assert inputs_of(person, "RoboticAM_Program", "RoboticAM_Program", "JointPath") == [
         f"{name} joint path"
     ]
-    shown = inputs_of(person, "RoboticAM_JointPath", "RoboticAM_JointPath", "Toolpath", "Cell")
-    assert shown == [f"{name} toolpath", f"{name} cell"]
+    labels = inputs_of(person, "RoboticAM_JointPath", "RoboticAM_JointPath", "Toolpath", "Cell")
+    assert labels == [f"{name} toolpath", f"{name} cell"]
     person.click("RoboticAM_ExportPath")
     path = "toolpath" if kind == "toolpath" else "joint path"
     assert (
@@ -140,37 +140,37 @@ def test_of_two_jobs_that_are_selected_the_first_is_taken(person, jobs, opened, 
 
 
 def test_what_jobs_share_stands_for_the_job_that_was_made_last(person, stages, opened):
-    first, second = stages
-    second["toolpath"].Cell = second["joint path"].Cell = first["cell"]
-    person.select(first["cell"])
+    first_job, second_job = stages
+    second_job["toolpath"].Cell = second_job["joint path"].Cell = first_job["cell"]
+    person.select(first_job["cell"])
     person.click("RoboticAM_Simulate")
-    person.select(first["toolpath"])
+    person.select(first_job["toolpath"])
     person.click("RoboticAM_Simulate")
     assert opened == ["Second joint path", "First joint path"]
 
 
 def test_a_cell_in_the_group_of_another_job_is_found(person, stages):
-    first, second = stages
-    doc = first["cell"].Document
-    second["toolpath"].Cell = second["joint path"].Cell = first["cell"]
-    group = grouped(doc, "Second", [second["feature"], second["toolpath"]])
-    grouped(doc, "First", list(first.values()))
+    first_job, second_job = stages
+    doc = first_job["cell"].Document
+    second_job["toolpath"].Cell = second_job["joint path"].Cell = first_job["cell"]
+    group = grouped(doc, "Second", [second_job["feature"], second_job["toolpath"]])
+    grouped(doc, "First", list(first_job.values()))
     person.select(group)
-    shown = inputs_of(person, "RoboticAM_JointPath", "RoboticAM_JointPath", "Toolpath", "Cell")
-    assert shown == ["Second toolpath", "First cell"]
+    labels = inputs_of(person, "RoboticAM_JointPath", "RoboticAM_JointPath", "Toolpath", "Cell")
+    assert labels == ["Second toolpath", "First cell"]
 
 
 @pytest.mark.parametrize("of_group", [True, False])
 def test_tools_tell_what_the_job_lacks_and_take_no_other(person, stages, jobs, opened, of_group):
-    first = stages[0]
-    first["cell"].Document.removeObject(first["joint path"].Name)
-    person.select(jobs[0] if of_group else first["cell"])
-    for command, told in (("Simulate", "to simulate"), ("SpinMap", "to map")):
+    first_job = stages[0]
+    first_job["cell"].Document.removeObject(first_job["joint path"].Name)
+    person.select(jobs[0] if of_group else first_job["cell"])
+    for command, text in (("Simulate", "to simulate"), ("SpinMap", "to map")):
         person.click(f"RoboticAM_{command}")
-        said = person.window.statusBar().currentMessage()
+        status_text = person.window.statusBar().currentMessage()
         assert (
-            said
-            == f"First has no joint path {told}; make a joint path first, or select another job."
+            status_text
+            == f"First has no joint path {text}; make a joint path first, or select another job."
         )
     assert opened == []
     person.gui.Selection.clearSelection()
@@ -183,11 +183,11 @@ def test_tools_tell_what_the_job_lacks_and_take_no_other(person, stages, jobs, o
 def test_a_program_is_proposed_for_part_and_machine_of_its_job(
     person, stages, jobs, which, name, post
 ):
-    first, second = stages
-    first["feature"].Source[0].Label = "part"
-    ball = first["cell"].Document.addObject("Part::Sphere", "Ball")
-    second["feature"].Source = (ball, [])
-    first["cell"].Machine = "staubli-tx60"
+    first_job, second_job = stages
+    first_job["feature"].Source[0].Label = "part"
+    ball = first_job["cell"].Document.addObject("Part::Sphere", "Ball")
+    second_job["feature"].Source = (ball, [])
+    first_job["cell"].Machine = "staubli-tx60"
     person.select(jobs[which])
     person.click("RoboticAM_Program")
     panel = person.panel("RoboticAM_Program")
@@ -213,12 +213,12 @@ def test_the_cell_follows_the_toolpath_until_one_is_chosen(person, stages):
     person.panel_closed()
     person.select(stages[0]["toolpath"])
     person.gui.Selection.addSelection(stages[1]["cell"].Document.Name, stages[1]["cell"].Name)
-    shown = inputs_of(person, "RoboticAM_JointPath", "RoboticAM_JointPath", "Toolpath", "Cell")
-    assert shown == ["First toolpath", "Second cell"]  # both are selected
+    labels = inputs_of(person, "RoboticAM_JointPath", "RoboticAM_JointPath", "Toolpath", "Cell")
+    assert labels == ["First toolpath", "Second cell"]  # both are selected
 
 
 def test_the_point_at_the_origin_is_of_no_path(person, jobs):
-    """A joint path without its toolpath, as in a document that it was copied into alone, draws nothing."""
+    """A joint path without its toolpath, as in a document with only its copy, draws nothing."""
     from freecad_am.gui.nodes.lines import Points
 
     points = Points(7.0, (1.0, 0.0, 0.0))
@@ -229,42 +229,48 @@ def test_the_point_at_the_origin_is_of_no_path(person, jobs):
 
 def test_a_new_job_is_seen_alone(person, hemisphere, coarse):
     doc = hemisphere.Document
-    other = doc.addObject("Part::Sphere", "Other")
-    other.Radius, other.Angle1, other.Placement.Base.x = 40, 0, 200
+    second_sphere = doc.addObject("Part::Sphere", "Other")
+    second_sphere.Radius, second_sphere.Angle1, second_sphere.Placement.Base.x = 40, 0, 200
     doc.recompute()
-    made = []
-    for part in (hemisphere, other):
-        before = set(api.stages_of(doc))
-        person.select(part)
+    jobs_stages = []
+    for sphere in (hemisphere, second_sphere):
+        old_stages = set(api.stages_of(doc))
+        person.select(sphere)
         person.click("RoboticAM_NewJob")
         person.as_revolution()
         person.press("Ok")
         person.panel_closed()
-        made.append([stage for stage in api.stages_of(doc) if stage not in before])
-    seen = [[stage.Name for stage in stages if stage.ViewObject.Visibility] for stages in made]
-    assert seen[0] == [] and {doc.getObject(name).Proxy.kind for name in seen[1]} >= {
+        jobs_stages.append([stage for stage in api.stages_of(doc) if stage not in old_stages])
+    visible_names = [
+        [stage.Name for stage in stages if stage.ViewObject.Visibility] for stages in jobs_stages
+    ]
+    assert visible_names[0] == [] and {
+        doc.getObject(name).Proxy.kind for name in visible_names[1]
+    } >= {
         "cell",
         "joint path",
     }
-    assert other.ViewObject.Visibility is False  # as of any job: the path lies in its surface
+    assert (
+        second_sphere.ViewObject.Visibility is False
+    )  # as for any job, the path is in its surface
 
 
 @pytest.mark.parametrize("kind", [*KINDS, "job"])
 @pytest.mark.always("joint path", "job")
 def test_the_dock_of_paths_opens_with_the_path_of_what_is_selected(person, stages, jobs, kind):
-    """Whether it is opened for the first time in a session or again."""
+    """This holds for the first opening in a session and for later ones."""
     person.select(jobs[0] if kind == "job" else stages[0][kind])
     if paths.only.dock is not None:
         paths.only.dock.target = None  # as in a new session
     person.click("RoboticAM_Path")
     choice = person.field(person.panel(paths.NAME), "path")
-    wanted = "toolpath" if kind == "toolpath" else "joint path"
-    assert choice.currentText() == f"First {wanted}"
-    assert stages[0][wanted].ViewObject.Visibility
+    expected = "toolpath" if kind == "toolpath" else "joint path"
+    assert choice.currentText() == f"First {expected}"
+    assert stages[0][expected].ViewObject.Visibility
     paths.only.dock.dock.close()
     person.select(jobs[1] if kind == "job" else stages[1][kind])
     person.click("RoboticAM_Path")
-    assert choice.currentText() == f"Second {wanted}"
+    assert choice.currentText() == f"Second {expected}"
 
 
 def test_a_program_shows_its_joint_path(person, stages, jobs):
@@ -279,11 +285,13 @@ def test_a_program_shows_its_joint_path(person, stages, jobs):
 
 
 def test_the_dock_of_paths_follows_the_document(person, stages, jobs):
-    """The selection of another document counts for nothing."""
+    """The selection in another document does not count."""
     person.select(stages[0]["joint path"])
-    other = App.newDocument("Other")
+    other_document = App.newDocument("Other")
     toolpath = api.make_toolpath(
-        other, api.make_feature(other, _sphere(other), layer_height=20), api.make_cell(other)
+        other_document,
+        api.make_feature(other_document, _sphere(other_document), layer_height=20),
+        api.make_cell(other_document),
     )
     toolpath.Label = "Third toolpath"
     person.idle()
@@ -293,7 +301,7 @@ def test_the_dock_of_paths_follows_the_document(person, stages, jobs):
 
 
 def _sphere(document):
-    part = document.addObject("Part::Sphere", "Sphere")
-    part.Radius, part.Angle1, part.Angle2 = 30, 0, 90
+    sphere = document.addObject("Part::Sphere", "Sphere")
+    sphere.Radius, sphere.Angle1, sphere.Angle2 = 30, 0, 90
     document.recompute()
-    return part
+    return sphere

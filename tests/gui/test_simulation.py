@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The simulation by clicks: it plays and steps, tells what core tells, marks what is wrong, leaves the view as it was."""
+"""The simulation by clicks: it plays and steps, shows the values of the core, marks faults, and
+leaves the view unchanged."""
 
 import dataclasses
 import json
@@ -35,9 +36,9 @@ CELLS = {
 def job(hemisphere, **cell):
     doc = hemisphere.Document
     feature = api.make_feature(doc, hemisphere, layer_height=15)
-    made = api.make_cell(doc, **(cell or CELLS["part-on-robot"]))
-    toolpath = api.make_toolpath(doc, feature, made, between_layers_wait=2.0, lead_on=0.5)
-    return api.make_joint_path(doc, toolpath, made)
+    cell_object = api.make_cell(doc, **(cell or CELLS["part-on-robot"]))
+    toolpath = api.make_toolpath(doc, feature, cell_object, between_layers_wait=2.0, lead_on=0.5)
+    return api.make_joint_path(doc, toolpath, cell_object)
 
 
 def matrix(transform):
@@ -49,12 +50,12 @@ def opened(person, path):
     person.select(path)
     person.click("RoboticAM_Simulate")
     panel = person.panel(docks.NAME)
-    person.idle(0.2)  # the camera is turned to all of it
+    person.idle(0.2)  # the camera is turning to show everything
     return panel, docks._open[0]
 
 
-def where(view):
-    """The camera but for its clipping planes, which follow what is to be seen."""
+def camera_state(view):
+    """Return the camera without its clipping planes, which follow the visible objects."""
     return [
         line for line in view.getCamera().splitlines() if "Distance" not in line or "focal" in line
     ]
@@ -84,7 +85,7 @@ def test_it_plays_and_everything_is_where_pykdl_puts_it(person, hemisphere, setu
     person.idle(0.1)
     assert simulation.player.time == moved  # it pauses
     scene = simulation.scene
-    seen = []
+    poses = []
     for share in (0.05, 0.2, 0.37, 0.71, 0.93):
         person.field(panel, "time").setValue(round(share * fields.STEPS))
         person.idle(0.05)
@@ -92,16 +93,17 @@ def test_it_plays_and_everything_is_where_pykdl_puts_it(person, hemisphere, setu
         assert simulation.player.time == pytest.approx(share * times.total, rel=1e-3)
         flange = arm.forward([state.joints])[0]
         tip, axis = cell.tip_in_part(flange[None])
-        part, nozzle = matrix(scene.part), matrix(scene.nozzle)
-        in_part = frames.inverse(part) @ nozzle
+        part_pose, nozzle = matrix(scene.part), matrix(scene.nozzle)
+        in_part = frames.inverse(part_pose) @ nozzle
         assert (
             np.abs(in_part[:3, 3] - tip[0]).max() < 2e-3
             and np.abs(in_part[:3, 2] - axis[0]).max() < 1e-5
         )
-        if motion.deposit[int(state.row)]:  # in rapid moves the tip goes where the joints take it
+        # in rapid moves the joints determine the path of the tip
+        if motion.deposit[int(state.row)]:
             assert np.linalg.norm(tip[0] - state.position) < 0.2
-        base, last = matrix(scene.machine.transforms[0]), matrix(scene.machine.transforms[-1])
-        drawn = frames.inverse(base) @ last @ cell.machine.chain.flange
+        base, last_link = matrix(scene.machine.transforms[0]), matrix(scene.machine.transforms[-1])
+        drawn = frames.inverse(base) @ last_link @ cell.machine.chain.flange
         assert np.abs(drawn - flange).max() < 5e-3
         row = int(state.row)
         deposited = int(motion.deposit[: row if not state.standing else row + 1].sum())
@@ -115,28 +117,28 @@ def test_it_plays_and_everything_is_where_pykdl_puts_it(person, hemisphere, setu
             bars.margins * cell.machine.unit_values,
             cell.limits.margin(state.joints)[: len(bars.margins)],
         )
-        seen.append((part, nozzle))
-    parts, nozzles = (np.array(column) for column in zip(*seen))
-    still = {"part-on-robot": nozzles, "tool-on-robot": parts}.get(setup)
+        poses.append((part_pose, nozzle))
+    part_poses, nozzles = (np.array(column) for column in zip(*poses))
+    still = {"part-on-robot": nozzles, "tool-on-robot": part_poses}.get(setup)
     if still is not None:
         assert np.ptp(still, axis=0).max() < 1e-6
-    assert max(np.ptp(parts, axis=0).max(), np.ptp(nozzles, axis=0).max()) > 1.0
+    assert max(np.ptp(part_poses, axis=0).max(), np.ptp(nozzles, axis=0).max()) > 1.0
 
 
 def test_it_leaves_the_view_and_the_document_as_they_were(person, hemisphere):
     path = job(hemisphere)
     doc = hemisphere.Document
-    person.select(path)  # what is selected has a box about it in FreeCAD 1.1
+    person.select(path)  # FreeCAD 1.1 draws a box around a selected object
     person.look()
     view = person.gui.activeDocument().activeView()
     graph = view.getSceneGraph()
-    undo, camera, nodes = doc.UndoCount, where(view), names_of(graph)
+    undo, camera, nodes = doc.UndoCount, camera_state(view), names_of(graph)
     visible = {obj.Name: obj.ViewObject.Visibility for obj in doc.Objects}
     switches = {obj.Name: obj.ViewObject.SwitchNode.whichChild.getValue() for obj in doc.Objects}
     doc.saveAs(str(person.folder / "job.FCStd"))
     modified = person.gui.activeDocument().Modified
-    before = person.folder / "before.png"
-    view.saveImage(str(before), 500, 400, "White")
+    picture_before = person.folder / "before.png"
+    view.saveImage(str(picture_before), 500, 400, "White")
     panel, _ = opened(person, path)
     assert names_of(graph) != nodes
     person.field(panel, "layer_on").click()
@@ -145,15 +147,15 @@ def test_it_leaves_the_view_and_the_document_as_they_were(person, hemisphere):
     docks._open[0].dock.close()
     person.idle(0.3)
     assert docks._open == [] and names_of(graph) == nodes
-    assert where(view) == camera
+    assert camera_state(view) == camera
     assert {obj.Name: obj.ViewObject.Visibility for obj in doc.Objects} == visible
     assert {
         obj.Name: obj.ViewObject.SwitchNode.whichChild.getValue() for obj in doc.Objects
     } == switches
     assert doc.UndoCount == undo and person.gui.activeDocument().Modified == modified
-    after = person.folder / "after.png"
-    view.saveImage(str(after), 500, 400, "White")
-    assert person.widgets.QImage(str(before)) == person.widgets.QImage(str(after))
+    picture_after = person.folder / "after.png"
+    view.saveImage(str(picture_after), 500, 400, "White")
+    assert person.widgets.QImage(str(picture_before)) == person.widgets.QImage(str(picture_after))
     assert [obj.Status for obj in api.stages_of(doc)] == ["up to date"] * 4
 
 
@@ -166,11 +168,11 @@ def test_steps_go_by_points_and_layers(person, hemisphere):
         person.field(panel, name).click()
         person.idle(0.02)
 
-    told = []
+    shown_texts = []
     for _ in range(len(times.layer_rows)):
-        told.append(simulation.player.time)
+        shown_texts.append(simulation.player.time)
         press("layer_on")
-    assert np.allclose(told, times.arrive[times.layer_rows])
+    assert np.allclose(shown_texts, times.arrive[times.layer_rows])
     assert simulation.player.time == times.total
     press("layer_back")
     assert simulation.player.time == pytest.approx(times.arrive[times.layer_rows[-1]])
@@ -180,9 +182,9 @@ def test_steps_go_by_points_and_layers(person, hemisphere):
     assert row - times.layer_rows[-1] >= 4 and simulation.player.time == times.arrive[row]
     press("point_back")
     assert simulation.player.time < times.arrive[row]
-    place = person.field(panel, "place").text()
+    place_text = person.field(panel, "place").text()
     layers = simulation.run.times.layers
-    assert place.startswith(
+    assert place_text.startswith(
         f"Layer {motion.layer[simulation.player.row]} (0 to {layers[-1]}), bead "
     )
     texts = [
@@ -194,19 +196,20 @@ def test_steps_go_by_points_and_layers(person, hemisphere):
 
 
 def violated(path):
-    """The joint path with a joint past its limit in one stretch and far too fast elsewhere, as no planner leaves it."""
+    """Change the joint path as no planner would: a joint past its limit in one stretch, and far too
+    fast elsewhere."""
     value = api.result(path)
     motion = value.motion
     joints = motion.joints.copy()
     rows = np.flatnonzero(motion.deposit)
-    far = rows[60:80]
-    joints[far, 4] = np.radians(136.0)
+    past_limit = rows[60:80]
+    joints[past_limit, 4] = np.radians(136.0)
     joints[rows[200:], 5] += 40.0
     path.Proxy._kept = (
         path.Key,
         Planned(value.joint_path, dataclasses.replace(motion, joints=joints)),
     )
-    return far, rows[200]
+    return past_limit, rows[200]
 
 
 def red_pixels(person):
@@ -218,22 +221,23 @@ def red_pixels(person):
     return int(((red > 90) & (red > 3 * green) & (red > 3 * blue)).sum())
 
 
-def drawn(simulation, colour):
-    """(n,) whether the deposit rows are drawn in a colour."""
+def rows_in_colour(simulation, colour):
+    """Return whether each deposit row (n,) is drawn in a colour."""
     red, green, blue = (round(255 * share) for share in colour)
     return simulation.scene.deposit.colours == (red << 24 | green << 16 | blue << 8 | 255)
 
 
 def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
     path = job(hemisphere)
-    far, fast = violated(path)
+    past_limit, fast = violated(path)
     panel, simulation = opened(person, path)
     calm = red_pixels(person)
-    simulation.player.go_to_row(int(far[5]))
+    simulation.player.go_to_row(int(past_limit[5]))
     simulation.show()
     person.idle(0.3)
     person.screenshot("simulation_past_limit")
-    touching = int(simulation.run.watch.touching[far[5]])  # so far bent the forearm is in the way
+    # with this bend the forearm is in the way
+    touching = int(simulation.run.watch.touching[past_limit[5]])
     assert simulation.scene.machine.bad.tolist() == [
         k in (5, touching) for k in range(7)
     ] and touching in (-1, 4)
@@ -243,29 +247,29 @@ def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
     findings = simulation.run.watch.findings
     assert {LIMIT, SLOWED} <= {finding.kind for finding in findings}
     simulation.player.go(0.0)
-    seen = []
+    visited = []
     for finding in findings:
         person.field(panel, "next_finding").click()
         person.idle(0.02)
-        seen.append(person.field(panel, "finding").text())
+        visited.append(person.field(panel, "finding").text())
         assert simulation.player.row == finding.row
-    assert len(seen) == len(set(seen)) > 3
-    assert any("q5 is 1.00° past its limit" in text for text in seen)
-    # at the feed asked for the axis cannot keep up: how much is what it becomes
+    assert len(visited) == len(set(visited)) > 3
+    assert any("q5 is 1.00° past its limit" in text for text in visited)
+    # the axis cannot reach the requested feed, and the read-out shows the achievable one
     simulation.player.go_to_row(int(fast))
     simulation.show()
     person.screenshot("simulation_too_fast")
-    kept = achievable_feed(simulation.run.motion, simulation.run.cell.machine.max_speed)
-    assert kept.slowed[fast] and kept.axis[fast] == 5
+    achievable = achievable_feed(simulation.run.motion, simulation.run.cell.machine.max_speed)
+    assert achievable.slowed[fast] and achievable.axis[fast] == 5
     assert (
         person.field(panel, "speed").text()
-        == f"{kept.achieved[fast]:.3g} mm/s instead of {kept.asked[fast]:.3g} mm/s"
+        == f"{achievable.achieved[fast]:.3g} mm/s instead of {achievable.asked[fast]:.3g} mm/s"
     )
     assert simulation.scene.machine.bad[6]
     # on the path, past the limit red, too fast orange
     on_path = np.flatnonzero(simulation.run.motion.deposit)
-    for rows, colour in ((far, WRONG_COLOUR), ([fast], SLOW_COLOUR)):
-        assert drawn(simulation, colour)[np.searchsorted(on_path, rows)].all()
+    for rows, colour in ((past_limit, WRONG_COLOUR), ([fast], SLOW_COLOUR)):
+        assert rows_in_colour(simulation, colour)[np.searchsorted(on_path, rows)].all()
     person.field(panel, "next_finding").click()
     simulation.player.go_to_row(len(simulation.run.motion) // 2)
     simulation.show()
@@ -273,38 +277,39 @@ def test_what_is_wrong_turns_red_and_findings_lead_to_it(person, hemisphere):
 
 
 def test_what_is_near_a_singularity_turns_red(person, hemisphere):
-    """A part of the path is: the condition asked for lies between those of one RZ for all, which is not searched."""
+    """A part of the path is near one: the condition limit is within the range of one RZ for all,
+    which is not searched."""
     path = job(hemisphere)
     api.change(path, method="constant", rz="20 deg")
     hemisphere.Document.recompute()
-    least = float(np.nanmedian(run_of(path).watch.condition))
-    api.change(path, min_condition=least)
+    median_condition = float(np.nanmedian(run_of(path).watch.condition))
+    api.change(path, min_condition=median_condition)
     hemisphere.Document.recompute()
     panel, simulation = opened(person, path)
     run = simulation.run
-    deposit, near = run.motion.deposit, run.watch.condition < least * (1.0 - 1e-9)
+    deposit, is_near = run.motion.deposit, run.watch.condition < median_condition * (1.0 - 1e-9)
     else_wrong = (run.watch.margin < -1e-6) | (run.watch.touching != -1)
     assert SINGULAR in {finding.kind for finding in run.watch.findings}
-    assert np.array_equal(drawn(simulation, WRONG_COLOUR), (near | else_wrong)[deposit])
-    calm = deposit & ~near & ~else_wrong & (run.watch.margin > 1.0)
-    row, free = (int(np.flatnonzero(rows)[0]) for rows in (near & ~else_wrong, calm))
-    for at, red in ((row, True), (free, False)):
-        simulation.player.go_to_row(at)
+    assert np.array_equal(rows_in_colour(simulation, WRONG_COLOUR), (is_near | else_wrong)[deposit])
+    calm = deposit & ~is_near & ~else_wrong & (run.watch.margin > 1.0)
+    row, free = (int(np.flatnonzero(rows)[0]) for rows in (is_near & ~else_wrong, calm))
+    for row_, red in ((row, True), (free, False)):
+        simulation.player.go_to_row(row_)
         simulation.show()
         person.idle(0.2)
         assert simulation.scene.machine.bad.tolist() == [False, *[red] * 6]
         assert ("color" in person.field(panel, "condition").styleSheet()) == red
         person.screenshot(f"simulation_singular_{red}")
-    said = []
-    for _ in run.watch.findings:  # each at its worst place
+    texts = []
+    for _ in run.watch.findings:  # each at its worst position
         person.field(panel, "next_finding").click()
-        said.append(
+        texts.append(
             (
-                bool(near[simulation.player.row]),
+                bool(is_near[simulation.player.row]),
                 "Near a singularity" in person.field(panel, "finding").text(),
             )
         )
-    assert (True, True) in said and (False, True) not in said
+    assert (True, True) in texts and (False, True) not in texts
 
 
 def test_a_robot_that_reaches_nothing_stands_in_one_piece(person, hemisphere, no_remedies):
@@ -328,13 +333,15 @@ def test_links_that_touch_each_other_are_told_by_both_names():
 
 
 def test_a_link_that_touches_turns_red_and_is_told(person, hemisphere):
-    # so wide a platform meets the forearm wherever the wrist is bent much
+    # such a wide platform hits the forearm at every strong bend of the wrist
     path = job(hemisphere, limits="paper", platform_diameter=320.0)
     panel, simulation = opened(person, path)
-    found = [one for one in simulation.run.watch.findings if one.kind == TOUCHES]
-    assert found and {(one.label, one.other) for one in found} == {("q4", "platform")}
+    contacts = [finding for finding in simulation.run.watch.findings if finding.kind == TOUCHES]
+    assert contacts and {(finding.label, finding.other) for finding in contacts} == {
+        ("q4", "platform")
+    }
     person.field(panel, "next_finding").click()
-    person.until(lambda: simulation.player.row == found[0].row, "the finding")
+    person.until(lambda: simulation.player.row == contacts[0].row, "the finding")
     assert person.field(panel, "finding").text().endswith("The link of q4 touches the platform")
     assert simulation.scene.machine.bad.tolist() == [k == 4 for k in range(7)]
     person.idle(0.2)
@@ -347,7 +354,7 @@ def test_a_link_that_touches_turns_red_and_is_told(person, hemisphere):
     simulation.show()
     assert not simulation.scene.machine.bad.any()
     docks._open[0].close()
-    # with the platform as it is nothing touches, and that is said
+    # with this platform nothing touches, and the dock says so
     api.change(path.Cell, platform_diameter=113.0)
     hemisphere.Document.recompute()
     panel, simulation = opened(person, path)
@@ -359,14 +366,14 @@ def test_a_program_that_resumes_plays_only_what_it_runs(person, hemisphere):
     program = api.make_program(hemisphere.Document, path, "CUP", start_at_layer=2)
     run = run_of(program)
     assert run.motion.layer.min() == 2 and run.times.layers[0] == 2
-    whole = run_of(path)
+    full_run = run_of(path)
     assert run.totals.length == pytest.approx(
         sum(bead.length for layer, _, bead in api.result(path.Toolpath) if layer >= 2)
     )
-    assert run.totals.length < whole.totals.length
+    assert run.totals.length < full_run.totals.length
     program.ViewObject.Proxy.doubleClicked(
         program.ViewObject
-    )  # the text, and under it what this part of the job takes
+    )  # the text, and below it the time of this section of the job
     window = person.panel("RoboticAM_ProgramText")
     sums = person.field(window, "sums").text()
     assert (
@@ -396,27 +403,29 @@ def test_a_program_of_linear_moves_plays_the_points_they_get(hemisphere):
     )
     run = run_of(api.make_program(doc, path, "LINES", motion="cartesian", post="staubli"))
     planned, toolpath = api.result(path), api.result(path.Toolpath)
-    beads = [one.bead for one in planned.joint_path.beads]
+    beads = [bead_path.bead for bead_path in planned.joint_path.beads]
     motion = steps.refined_to_chord_error(planned.motion, run.cell, toolpath.chord_error, beads)
     assert len(run.motion) == len(motion) > len(planned.motion)
     assert np.array_equal(run.motion.joints, motion.joints) and np.array_equal(
         run.motion.point, motion.point
     )
-    whole = run_of(path)
-    assert run.totals.length > whole.totals.length  # of the arcs instead of their chords
+    full_run = run_of(path)
+    assert run.totals.length > full_run.totals.length  # along the arcs instead of their chords
     same = [
-        np.flatnonzero((run.motion.position == place).all(axis=1))[-1]
-        for place in whole.motion.position[200:240]
+        np.flatnonzero((run.motion.position == position).all(axis=1))[-1]
+        for position in full_run.motion.position[200:240]
     ]
-    assert np.array_equal(run.watch.condition[same], whole.watch.condition[200:240])
+    assert np.array_equal(run.watch.condition[same], full_run.watch.condition[200:240])
     issue = Issue(WARNING, "X", "seen", 1, 0, 7)
     path.Issues = json.dumps([issue.as_dict()])
-    found, told = (
-        next(one for one in made.watch.findings if one.kind == ISSUE)
-        for made in (run_of(path), run_of(doc.Program))
+    path_issue, program_issue = (
+        next(finding for finding in run_.watch.findings if finding.kind == ISSUE)
+        for run_ in (run_of(path), run_of(doc.Program))
     )
-    assert told.row > found.row
-    assert np.array_equal(run.motion.position[told.row], whole.motion.position[found.row])
+    assert program_issue.row > path_issue.row
+    assert np.array_equal(
+        run.motion.position[program_issue.row], full_run.motion.position[path_issue.row]
+    )
 
 
 @pytest.mark.always("document", "toolpath", "undo")
@@ -459,18 +468,22 @@ def test_it_ends_by_itself_when_what_it_plays_goes_or_changes(person, hemisphere
             if dock.isVisible()
         ]
         assert docs == []
-    for one in docks._open:
-        one.close()
+    for open_dock in docks._open:
+        open_dock.close()
 
 
 def test_two_simulations_replace_one_another_and_without_a_path_it_says_so(person, hemisphere):
     path = job(hemisphere)
-    _, first = opened(person, path)
+    _, first_simulation = opened(person, path)
     tool.simulate_object(path)
     person.idle(0.2)
-    assert len(docks._open) == 1 and docks._open[0] is not first and first.scene is None
+    assert (
+        len(docks._open) == 1
+        and docks._open[0] is not first_simulation
+        and first_simulation.scene is None
+    )
     assert docks._open[0].dock.findChildren(person.widgets.QLabel, "stale") == []
-    path.Degree = 2  # not recomputed: what is played is the plan before, and that is said
+    path.Degree = 2  # without a recompute it plays the earlier plan, and says so
     tool.simulate_object(path)
     person.idle(0.2)
     assert "earlier plan" in person.field(docks._open[0].dock, "stale").text()
@@ -488,15 +501,16 @@ def test_two_simulations_replace_one_another_and_without_a_path_it_says_so(perso
 
 
 def test_positioner_and_its_bodies_are_drawn_where_its_axes_are(person, hemisphere):
-    """Seen from what stands they are where PyKDL has the positioner's own chain, and the part goes with the last one."""
+    """They are at the poses of PyKDL's chain of the positioner, relative to its base, and the part
+    moves with the last one."""
     path = on_positioner(hemisphere, 15)
     panel, simulation = opened(person, path)
     scene, links, times = simulation.scene, simulation.scene.external_links, simulation.run.times
     numbers = [link.link for link in links.links]
     assert {0, 1, 2} <= set(numbers)
-    own = KdlArm(
+    positioner_solver = KdlArm(
         external.load("motoman-motopos-d500")
-    )  # the positioner alone, as its own file has it
+    )  # only the positioner, from its own file
     turned, to_face, to_part = [], [], []
     for share in (0.1, 0.3, 0.45, 0.7, 0.9):
         person.field(panel, "time").setValue(round(share * fields.STEPS))
@@ -505,9 +519,12 @@ def test_positioner_and_its_bodies_are_drawn_where_its_axes_are(person, hemisphe
         drawn = [np.array(value.getValue().getValue()).T for value in links.matrices]
         base, table = drawn[numbers.index(0)], drawn[numbers.index(2)]
         turned.append(angles)
-        to_face.append(frames.inverse(frames.inverse(base) @ table) @ own.forward(angles[None])[0])
+        to_face.append(
+            frames.inverse(frames.inverse(base) @ table)
+            @ positioner_solver.forward(angles[None])[0]
+        )
         to_part.append(frames.inverse(table) @ matrix(scene.part))
     assert np.ptp(turned, axis=0).min() > 0.2
-    for found in (to_face, to_part):
-        np.testing.assert_allclose(np.array(found)[:, :3, :3] - found[0][:3, :3], 0.0, atol=1e-5)
-        np.testing.assert_allclose(np.array(found)[:, :3, 3] - found[0][:3, 3], 0.0, atol=1e-2)
+    for poses in (to_face, to_part):
+        np.testing.assert_allclose(np.array(poses)[:, :3, :3] - poses[0][:3, :3], 0.0, atol=1e-5)
+        np.testing.assert_allclose(np.array(poses)[:, :3, 3] - poses[0][:3, 3], 0.0, atol=1e-2)

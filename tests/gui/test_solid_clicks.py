@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids in plane layers by clicks: the panel and its preview, New Job of a bracket and of a mesh."""
+"""Solids in plane layers by clicks: the panel and its preview, New Job of a bracket and of a
+mesh."""
 
 import FreeCAD as App
 import MeshPart
@@ -21,14 +22,14 @@ def bracket(doc):
 
 def test_the_panel_previews_and_makes_a_feature(person):
     doc = App.newDocument("Solid")
-    part = bracket(doc)
-    person.select(part)
+    bracket_object = bracket(doc)
+    person.select(bracket_object)
     person.click("RoboticAM_Solid")
     panel = person.panel("RoboticAM_SolidFeature")
-    told = person.field(panel, "preview")
-    person.until(lambda: "1 solid, 40 mm high" in told.text(), "the preview", 30)
+    preview_text = person.field(panel, "preview")
+    person.until(lambda: "1 solid, 40 mm high" in preview_text.text(), "the preview", 30)
     person.type(panel, "Direction", "1 0 0")
-    person.until(lambda: "60 mm high" in told.text(), "the preview along X", 30)
+    person.until(lambda: "60 mm high" in preview_text.text(), "the preview along X", 30)
     person.screenshot("solid_panel")
     person.press("Ok")
     person.panel_closed()
@@ -36,7 +37,7 @@ def test_the_panel_previews_and_makes_a_feature(person):
     assert (feature.Status, feature.Height.Value, feature.Source[0]) == (
         "up to date",
         pytest.approx(60.0),
-        part,
+        bracket_object,
     )
 
 
@@ -47,30 +48,32 @@ def elbow(doc):
     ).toShape()
     spine = doc.addObject("Part::Feature", "Spine")
     spine.Shape = bend
-    part = doc.addObject("Part::Feature", "Elbow")
-    part.Shape = Part.Wire(bend).makePipeShell(
+    elbow_object = doc.addObject("Part::Feature", "Elbow")
+    elbow_object.Shape = Part.Wire(bend).makePipeShell(
         [Part.Wire(Part.makeCircle(8, App.Vector(), up))], True, False
     )
     doc.recompute()
-    return part, spine
+    return elbow_object, spine
 
 
 def test_layers_along_a_guide_that_is_picked_or_found(person):
     doc = App.newDocument("Guided")
-    part, spine = elbow(doc)
-    person.select(part)
+    elbow_object, spine = elbow(doc)
+    person.select(elbow_object)
     person.click("RoboticAM_Solid")
     panel = person.panel("RoboticAM_SolidFeature")
-    told = person.field(panel, "preview")
-    person.until(lambda: "1 solid," in told.text(), "the preview", 30)
+    preview_text = person.field(panel, "preview")
+    person.until(lambda: "1 solid," in preview_text.text(), "the preview", 30)
     person.type(panel, "Band", "40")
     person.choose(panel, "Layers", "along")
-    person.until(lambda: "centre line, 47." in told.text(), "the centre line", 30)
+    person.until(lambda: "centre line, 47." in preview_text.text(), "the centre line", 30)
     person.field(panel, "PickGuide").click()
     person.select(spine)
     guide = person.field(panel, "Guide")
     person.until(
-        lambda: "Spine" in guide.text() and "centre line" not in told.text(), "the guide", 30
+        lambda: "Spine" in guide.text() and "centre line" not in preview_text.text(),
+        "the guide",
+        30,
     )
     person.screenshot("solid_panel_guide")
     person.press("Ok")
@@ -82,16 +85,16 @@ def test_layers_along_a_guide_that_is_picked_or_found(person):
 
 def test_faces_that_the_first_layer_lies_on_are_picked_and_taken_back(person):
     doc = App.newDocument("Started")
-    part = bracket(doc)
-    person.select(part)
+    bracket_object = bracket(doc)
+    person.select(bracket_object)
     person.click("RoboticAM_Solid")
     panel = person.panel("RoboticAM_SolidFeature")
-    told = person.field(panel, "preview")
-    person.until(lambda: "1 solid," in told.text(), "the preview", 30)
+    preview_text = person.field(panel, "preview")
+    person.until(lambda: "1 solid," in preview_text.text(), "the preview", 30)
     person.field(panel, "PickStartFaces").click()
-    person.gui.Selection.addSelection(part, "Face1")
-    chosen = person.field(panel, "StartFaces")
-    person.until(lambda: "Face1" in chosen.text(), "the face", 10)
+    person.gui.Selection.addSelection(bracket_object, "Face1")
+    face_field = person.field(panel, "StartFaces")
+    person.until(lambda: "Face1" in face_field.text(), "the face", 10)
     person.until(
         lambda: "do not use start faces" in all_text(person, panel), "that planes have none", 10
     )
@@ -107,7 +110,7 @@ def test_faces_that_the_first_layer_lies_on_are_picked_and_taken_back(person):
     (feature,) = api.stages_of(doc, "feature")
     assert (feature.Status, feature.StartFaces, feature.Layers) == (
         "up to date",
-        (part, ["Face1"]),
+        (bracket_object, ["Face1"]),
         "geodesic",
     )
     person.double_click(feature)
@@ -119,7 +122,7 @@ def test_faces_that_the_first_layer_lies_on_are_picked_and_taken_back(person):
 
 
 def all_text(person, panel):
-    """What the labels say that are seen."""
+    """Return the texts of the visible labels."""
     return " ".join(
         label.text() for label in panel.findChildren(person.widgets.QLabel) if label.isVisible()
     )
@@ -127,22 +130,22 @@ def all_text(person, panel):
 
 def test_new_job_fills_what_is_no_wall(person, coarse):
     doc = App.newDocument("Job")
-    part = bracket(doc)
-    person.select(part)
+    bracket_object = bracket(doc)
+    person.select(bracket_object)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     reason = person.field(panel, "reason")
     person.until(lambda: "is a solid, and" in reason.text(), "the proposal", 30)
     assert person.field(panel, "Kind").currentText() == "Solids in plane layers"
     for name in ("Face1", "Face2"):
-        person.gui.Selection.addSelection(doc.Name, part.Name, name)
+        person.gui.Selection.addSelection(doc.Name, bracket_object.Name, name)
     person.until(
         lambda: "so these faces are covered" in reason.text(),
         "faces to be proposed for cladding",
         30,
     )
     assert person.field(panel, "Kind").currentText() == "Cladding of faces"
-    assert person.field(panel, "Source").text() == f"{part.Label} Face1 Face2"
+    assert person.field(panel, "Source").text() == f"{bracket_object.Label} Face1 Face2"
     person.press("Cancel")
     person.panel_closed()
 
@@ -171,54 +174,57 @@ def red(person):
 
 
 def test_the_slider_shows_what_leans_out_before_anything_is_sliced(person):
-    """A table with a foot: its top leans out all round, and a chamfer of 30 deg under it."""
+    """A table with a foot: its top overhangs all around, with a chamfer of 30 deg below."""
     doc = App.newDocument("Overhang")
-    part = doc.addObject("Part::Feature", "Table")
+    table_object = doc.addObject("Part::Feature", "Table")
     foot = Part.makeBox(20, 20, 20, App.Vector(-10, -10, 0))
     half = 10 + 10 * 3**-0.5 * 1.0
     low, high = (
         Part.makePolygon(
             [
-                App.Vector(*place)
-                for place in ((-r, -r, z), (r, -r, z), (r, r, z), (-r, r, z), (-r, -r, z))
+                App.Vector(*corner)
+                for corner in ((-r, -r, z), (r, -r, z), (r, r, z), (-r, r, z), (-r, -r, z))
             ]
         )
         for r, z in ((10, 20), (half, 30))
     )
-    part.Shape = foot.fuse(
+    table_object.Shape = foot.fuse(
         [Part.makeLoft([low, high], True, True), Part.makeBox(60, 60, 5, App.Vector(-30, -30, 30))]
     )
     doc.recompute()
-    person.select(part)
+    person.select(table_object)
     person.click("RoboticAM_Solid")
     panel = person.panel("RoboticAM_SolidFeature")
-    slider, told = person.field(panel, "OverhangAngle"), person.field(panel, "OverhangArea")
+    slider, overhang_text = (
+        person.field(panel, "OverhangAngle"),
+        person.field(panel, "OverhangArea"),
+    )
     ceiling = 60**2 - (2 * half) ** 2
     chamfer = 4 * (10 + half) * 10 / 0.75**0.5
 
     def area():
-        return float(told.text().split(": ")[1].split(" ")[0]) * 100
+        return float(overhang_text.text().split(": ")[1].split(" ")[0]) * 100
 
-    person.until(lambda: "cm²" in told.text(), "the area", 30)
+    person.until(lambda: "cm²" in overhang_text.text(), "the area", 30)
     assert slider.value() == 45 and area() == pytest.approx(ceiling, rel=2e-3)
     view = person.gui.activeDocument().activeView()
     view.setCameraOrientation(App.Rotation(App.Vector(1, 0, 0), 150))  # from below
     person.gui.SendMsgToActiveView("ViewFit")
     person.idle(0.5)
-    some = red(person)
+    red_pixels = red(person)
     person.screenshot("overhang_view")
     slider.setValue(25)
     assert area() == pytest.approx(ceiling + chamfer, rel=2e-3)
     person.idle(0.5)
-    assert red(person) > some + 500
+    assert red(person) > red_pixels + 500
     slider.setValue(89)
     assert area() == pytest.approx(ceiling, rel=2e-3)
     person.type(
         panel, "Direction", "0 0 -1"
-    )  # upside down nothing but the foot's underside is over something
+    )  # upside down only the foot's underside is an overhang
     person.until(lambda: area() == 0.0, "nothing that leans out", 20)
     person.idle(0.3)
-    assert red(person) < 0.2 * some  # nothing but marks of FreeCAD's own
+    assert red(person) < 0.2 * red_pixels  # only FreeCAD's own marks
     person.type(panel, "MaxOverhang", "60 deg")
     person.until(lambda: slider.value() == 60, "the slider to follow the field", 20)
     person.press("Cancel")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The macro interface: parameters as keywords, nothing left behind by what fails, files in and out."""
+"""The macro interface: parameters as keywords, no remains of failed calls, files in and out."""
 
 import dataclasses
 import math
@@ -94,7 +94,8 @@ def test_a_failed_change_changes_nothing(job):
 
 
 def test_a_step_in_which_nothing_changed_is_not_left_open(job):
-    """FreeCAD ends none that no document has begun; the next step then was taken for a part of it, and not taken back."""
+    """FreeCAD closes no step that no document has begun; the next step once became part of it, and
+    was not undone."""
     job.doc.UndoMode = 1
     for refused in (0, 0, 1e-6, 1e-6):
         with pytest.raises(InputError):
@@ -174,16 +175,16 @@ def test_stale_inputs_are_renewed_by_what_is_made_from_them(doc, part):
 def test_all_stages_at_once(doc, part):
     part.Radius = 15  # fewer layers at the defaults
     doc.recompute()
-    made = api.make_all(doc, part)
-    assert [obj.Proxy.kind for obj in made] == [
+    stages = api.make_all(doc, part)
+    assert [obj.Proxy.kind for obj in stages] == [
         "cell",
         "feature",
         "toolpath",
         "joint path",
         "program",
     ]
-    assert made[-1].ProgramName == "HEMISPHERE_N_1" and made[-1].Status == "up to date"
-    assert api.stages_of(doc, "program") == [made[-1]]
+    assert stages[-1].ProgramName == "HEMISPHERE_N_1" and stages[-1].Status == "up to date"
+    assert api.stages_of(doc, "program") == [stages[-1]]
 
 
 @pytest.mark.parametrize(
@@ -201,12 +202,12 @@ def test_proposed_names(text, name):
 
 
 def test_progress_is_told_and_may_cancel(job):
-    told = []
-    with api.told_to(lambda fraction, text: told.append(fraction)):
+    texts = []
+    with api.told_to(lambda fraction, text: texts.append(fraction)):
         api.change(job.joint_path, tolerance=1e-7)
-    falls = sum(later < earlier for earlier, later in zip(told, told[1:]))
+    falls = sum(later < earlier for earlier, later in zip(texts, texts[1:]))
     assert (
-        told and falls == 1 and min(told) >= 0.0 and max(told) <= 1.0
+        texts and falls == 1 and min(texts) >= 0.0 and max(texts) <= 1.0
     )  # joint path, then the program
 
     def cancel(fraction, text):
@@ -220,13 +221,13 @@ def test_progress_is_told_and_may_cancel(job):
 
 
 def test_what_is_found_on_the_way_is_told():
-    issue, told = Issue("note", "LARGE", "it takes long"), []
+    issue, issues = Issue("note", "LARGE", "it takes long"), []
     progress.report_issue(issue)
-    with api.told_to(lambda fraction, text: None, told.append):
+    with api.told_to(lambda fraction, text: None, issues.append):
         progress.report_issue(issue)
         with api.told_to(lambda fraction, text: None):
             progress.report_issue(issue)
-    assert told == [issue]
+    assert issues == [issue]
 
 
 def test_export_writes_the_files(job, tmp_path):
@@ -250,10 +251,10 @@ def test_parts_from_files(doc, tmp_path, ending):
     path = str(tmp_path / f"Été.{ending}")
     shape = Part.makeSphere(30, App.Vector(), App.Vector(0, 0, 1), 0, 90)
     {"step": shape.exportStep, "brep": shape.exportBrep, "iges": shape.exportIges}[ending](path)
-    part = api.open_part(doc, path)
-    assert part.Label == "Été" and part.State == ["Up-to-date"]
-    assert part.Shape.BoundBox.ZMax == pytest.approx(30, abs=1e-3)
-    assert api.make_feature(doc, part, layer_height=5).WallLength.Value == pytest.approx(
+    imported_part = api.open_part(doc, path)
+    assert imported_part.Label == "Été" and imported_part.State == ["Up-to-date"]
+    assert imported_part.Shape.BoundBox.ZMax == pytest.approx(30, abs=1e-3)
+    assert api.make_feature(doc, imported_part, layer_height=5).WallLength.Value == pytest.approx(
         15 * math.pi, rel=1e-5
     )
 
@@ -268,10 +269,10 @@ def test_parts_from_documents_are_taken_where_they_stand(doc, part, tmp_path):
     target, doc_name = App.newDocument("Target"), doc.Name
     try:
         for closed in (False, True):
-            found = api.open_part(target, str(tmp_path / "part.FCStd"), LABEL)
-            assert found.Shape.BoundBox.ZMin == pytest.approx(
+            imported_part = api.open_part(target, str(tmp_path / "part.FCStd"), LABEL)
+            assert imported_part.Shape.BoundBox.ZMin == pytest.approx(
                 7, abs=1e-6
-            ) and found.Label.startswith("Hémisphère n°")
+            ) and imported_part.Label.startswith("Hémisphère n°")
             assert App.ActiveDocument.Name == target.Name
             assert (doc_name in App.listDocuments()) is not closed
             if not closed:
@@ -300,15 +301,15 @@ def test_a_mesh_of_a_document_is_taken_where_it_stands(doc, tmp_path):
     App.closeDocument(doc.Name)
     target = App.newDocument("Target")
     try:
-        found = api.open_part(target, str(tmp_path / "scan.FCStd"))
+        imported_mesh = api.open_part(target, str(tmp_path / "scan.FCStd"))
         low, high = (
-            np.array(found.Mesh.Topology[0]).min(axis=0),
-            np.array(found.Mesh.Topology[0]).max(axis=0),
+            np.array(imported_mesh.Mesh.Topology[0]).min(axis=0),
+            np.array(imported_mesh.Mesh.Topology[0]).max(axis=0),
         )
         assert low == pytest.approx([-15, 0, 0], abs=1e-4) and high == pytest.approx(
             [5, 20, 20], abs=1e-4
         )
-        assert found.Label == "Scan" and len(found.Mesh.Topology[1]) == 12
+        assert imported_mesh.Label == "Scan" and len(imported_mesh.Mesh.Topology[1]) == 12
     finally:
         App.closeDocument(target.Name)
 
@@ -352,12 +353,15 @@ def test_a_sketch_turned_about_its_own_axis(doc):
     assert frame[:3, 3] == pytest.approx([1, 2, 3]) and frame[:3, 2] == pytest.approx([0, 0, 1])
     assert feature.WallLength.Value == pytest.approx(math.hypot(10, 40))
     key = feature.Key
-    other = api.make_feature(doc, sketch, layer_height=10)  # the vertical axis goes without saying
-    assert other.Key == key and other.Axis is None
+    default_axis = api.make_feature(
+        doc, sketch, layer_height=10
+    )  # the vertical axis is the default
+    assert default_axis.Key == key and default_axis.Axis is None
 
 
 def test_with_the_part_mounted_by_its_own_frame_the_platform_is_there(doc, part):
-    """A wall that floats above the platform of its part's frame, or lies beside it, is seen where it is."""
+    """A wall above the platform of its part's frame, or next to it, is reported at its real
+    position."""
     part.Placement.Base = (200, 0, 0)
     doc.recompute()
     beside = api.make_cell(doc, limits="paper", mount="part")
@@ -375,49 +379,55 @@ def test_a_solid_drawn_above_the_platform_is_put_on_it_by_a_new_job(doc):
     doc.recompute()
     cell, _, toolpath, *_ = api.make_all(doc, box, kind="solid")
     assert cell.Mount == "feature" and not {"ABOVE_PLATFORM", "UNSUPPORTED"} & {
-        one.code for one in api.issues(toolpath)
+        issue.code for issue in api.issues(toolpath)
     }
     api.change(cell, mount="part")
-    found = {one.code: one for one in api.issues(toolpath)}
-    assert {"ABOVE_PLATFORM", "UNSUPPORTED"} <= set(found) and "20 mm above" in found[
+    issues = {issue.code: issue for issue in api.issues(toolpath)}
+    assert {"ABOVE_PLATFORM", "UNSUPPORTED"} <= set(issues) and "20 mm above" in issues[
         "ABOVE_PLATFORM"
     ].message
-    api.change(cell, platform_diameter=0)  # nobody knows what stands there
-    assert not {"ABOVE_PLATFORM", "UNSUPPORTED"} & {one.code for one in api.issues(toolpath)}
+    api.change(cell, platform_diameter=0)  # the height of the platform is then unknown
+    assert not {"ABOVE_PLATFORM", "UNSUPPORTED"} & {issue.code for issue in api.issues(toolpath)}
 
 
 @pytest.mark.parametrize(
     ("layers", "low"), [("", 0.0), ("", 4.0), ("", 20.0), ("", -4.0), ("offset", 9.0)]
 )
 def test_a_new_job_plans_its_layers_once_wherever_the_part_is(doc, monkeypatch, layers, low):
-    """Layers may take minutes. What comes of it is what comes where the toolpath is asked whether it lies over nothing."""
+    """Layers may take minutes. The result equals that of a toolpath that is checked for missing
+    support."""
     box = doc.addObject("Part::Box", "Box")
     box.Length, box.Width, box.Height = 16, 12, 4
     box.Placement = App.Placement(App.Vector(40, 10, low), App.Rotation(App.Vector(0, 0, 1), 30))
     doc.recompute()
     planned, plan = [], solids_plan.plan
-    monkeypatch.setattr(solids_plan, "plan", lambda *given: planned.append(given) or plan(*given))
+    monkeypatch.setattr(
+        solids_plan, "plan", lambda *arguments: planned.append(arguments) or plan(*arguments)
+    )
     cell, _, toolpath, *_ = api.make_all(doc, box, kind="solid", layers=layers)
     assert len(planned) == 1
     monkeypatch.setattr(suit, "_is_above", lambda cell, features: False)
-    other, _, asked, *_ = api.make_all(doc, box, kind="solid", layers=layers)
+    feature, _, planned_toolpath, *_ = api.make_all(doc, box, kind="solid", layers=layers)
     assert (cell.Mount, toolpath.Status, toolpath.Issues) == (
-        other.Mount,
-        asked.Status,
-        asked.Issues,
+        feature.Mount,
+        planned_toolpath.Status,
+        planned_toolpath.Issues,
     )
-    assert toolpath.ResultData == asked.ResultData
+    assert toolpath.ResultData == planned_toolpath.ResultData
 
 
 def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypatch, root):
-    """Its file lies in FreeCAD's folder of user data; a change of the file makes the cell stale at the next recompute."""
+    """Its file is in FreeCAD's folder of user data; a change of the file makes the cell stale at
+    the next recompute."""
     folder = tmp_path / "RoboticAM" / "machines"
     folder.mkdir(parents=True)
     text = (root / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(
         encoding="utf-8"
     )
-    own = folder / "our-arm.json"
-    own.write_text(text.replace('"id": "fanuc-arcmate120ic"', '"id": "our-arm"'), encoding="utf-8")
+    machine_file = folder / "our-arm.json"
+    machine_file.write_text(
+        text.replace('"id": "fanuc-arcmate120ic"', '"id": "our-arm"'), encoding="utf-8"
+    )
     monkeypatch.setattr(App, "getUserAppDataDir", lambda: str(tmp_path) + os.sep)
     cell = api.make_cell(doc, machine="our-arm", limits="paper")
     feature = api.make_feature(doc, part, layer_height=15)
@@ -425,8 +435,9 @@ def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypat
     joint_path = api.make_joint_path(doc, toolpath, cell)
     assert api.result(joint_path).joint_path.feasible
     key = cell.Key
-    own.write_text(
-        own.read_text(encoding="utf-8").replace("(= M-20iA", "(ours, = M-20iA"), encoding="utf-8"
+    machine_file.write_text(
+        machine_file.read_text(encoding="utf-8").replace("(= M-20iA", "(ours, = M-20iA"),
+        encoding="utf-8",
     )
     api.recompute(doc)
     assert cell.Key != key and "ours" in cell.MachineTitle
@@ -435,17 +446,18 @@ def test_a_users_own_machine_is_known_by_its_name(doc, part, tmp_path, monkeypat
 @pytest.mark.any_version
 @pytest.mark.parametrize("machine", ["kuka-kr6-r900-2", "motoman-ma2010", "staubli-tx60"])
 def test_a_new_job_of_another_robot_can_be_carried_out(doc, monkeypatch, machine, no_remedies):
-    """At the deposition point and in the branch of the default robot each of these is out of reach or past a limit."""
+    """At the deposition point and in the configuration of the default robot, each of these is out
+    of reach or past a limit."""
     make = api.make_feature_of
 
-    def coarse(*given, values, **named):
-        return make(*given, values={"layer_height": 5.0, "chord_error": 0.1, **values}, **named)
+    def coarse(*arguments, values, **named):
+        return make(*arguments, values={"layer_height": 5.0, "chord_error": 0.1, **values}, **named)
 
     monkeypatch.setattr(api, "make_feature_of", coarse)
-    part = doc.addObject("Part::Sphere", "Dome")
-    part.Radius, part.Angle1 = 30, 0
+    dome = doc.addObject("Part::Sphere", "Dome")
+    dome.Radius, dome.Angle1 = 30, 0
     doc.recompute()
-    cell, feature, toolpath, joint_path = api.make_all(doc, part, machine=machine)[:4]
+    cell, feature, toolpath, joint_path = api.make_all(doc, dome, machine=machine)[:4]
     assert (joint_path.Status, cell.Machine, feature.LayerHeight.Value) == (
         "up to date",
         machine,
@@ -456,15 +468,16 @@ def test_a_new_job_of_another_robot_can_be_carried_out(doc, monkeypatch, machine
 
 
 def test_a_new_job_puts_a_part_that_lies_about_its_origin_on_the_platform(doc):
-    """It was refused, and the panel has no field for what it said would help. Programs are those of the part moved up."""
+    """It was once rejected with a remedy for which the panel has no field. The program is that of
+    the part moved up."""
     lying, up = doc.addObject("Part::Box", "Block"), doc.addObject("Part::Box", "Block")
-    for part, base in ((lying, App.Vector(5, 8, -1.5)), (up, App.Vector(5, 8, 0))):
-        part.Length, part.Width, part.Height, part.Placement.Base = 12, 12, 3, base
+    for block, base in ((lying, App.Vector(5, 8, -1.5)), (up, App.Vector(5, 8, 0))):
+        block.Length, block.Width, block.Height, block.Placement.Base = 12, 12, 3, base
     doc.recompute()
     cell, *_, program = api.make_all(doc, lying, kind="solid", name="BLOCK")
-    other, *_, above = api.make_all(doc, up, kind="solid", name="BLOCK")
-    assert (cell.Mount, other.Mount, program.Status) == ("feature", "auto", "up to date")
-    api.change(other, mount="feature")
+    raised_feature, *_, above = api.make_all(doc, up, kind="solid", name="BLOCK")
+    assert (cell.Mount, raised_feature.Mount, program.Status) == ("feature", "auto", "up to date")
+    api.change(raised_feature, mount="feature")
     assert files_of(program) == files_of(above)
 
 
@@ -473,20 +486,20 @@ def test_a_new_job_puts_a_part_that_lies_about_its_origin_on_the_platform(doc):
 def test_remedies_that_take_long_are_told_before_they_are_looked_for(
     doc, part, monkeypatch, seconds, long
 ):
-    """What counts as long is set so that the search for this part does, or does not."""
+    """The test sets the limit for a long search below or above the search time of this part."""
     cell = api.make_cell(doc, deposition_point=(5000, 0, 0, 0, 0, 0))  # out of reach
     toolpath = api.make_toolpath(
         doc, api.make_feature(doc, part, layer_height=15, chord_error=0.5), cell
     )
     monkeypatch.setattr(estimated_size, "LARGE_SECONDS", seconds)
-    told, looked = [], []
+    issues, searches = [], []
     monkeypatch.setattr(
-        "freecad_am.objects.joint_path.remedies", lambda *_: looked.append(list(told)) or []
+        "freecad_am.objects.joint_path.remedies", lambda *_: searches.append(list(issues)) or []
     )
-    with api.told_to(lambda *_: None, lambda issue: told.append(issue.code)):
+    with api.told_to(lambda *_: None, lambda issue: issues.append(issue.code)):
         path = api.make_joint_path(doc, toolpath, cell)
     assert any(issue.level == "error" for issue in api.issues(path))
-    assert looked == [["LARGE"] if long else []]
+    assert searches == [["LARGE"] if long else []]
 
 
 @pytest.mark.parametrize(
@@ -518,8 +531,8 @@ def test_a_new_job_of_a_kuka_robot_with_the_torch_ends_with_a_program(doc, part,
     monkeypatch.setattr(
         api,
         "make_feature_of",
-        lambda *given, values, **named: make(
-            *given, values={"layer_height": 15.0, "chord_error": 0.5, **values}, **named
+        lambda *arguments, values, **named: make(
+            *arguments, values={"layer_height": 15.0, "chord_error": 0.5, **values}, **named
         ),
     )
     *_, program = api.make_all(doc, part, machine="kuka-kr16-2", setup="tool-on-robot")
@@ -528,16 +541,18 @@ def test_a_new_job_of_a_kuka_robot_with_the_torch_ends_with_a_program(doc, part,
 
 
 def test_a_job_whose_toolpath_cannot_be_carried_out_is_there_as_far_as_it_goes(doc):
-    """A low block that is deposited within a frame around it, where the nozzle has no room."""
+    """A low block inside a frame leaves no room for the nozzle."""
     frame, block = (doc.addObject("Part::Feature", name) for name in ("Frame", "Block"))
     frame.Shape = Part.makeBox(40, 40, 40).cut(Part.makeBox(24, 24, 40, App.Vector(8, 8, 0)))
     block.Shape = Part.makeBox(18, 18, 2, App.Vector(11, 11, 0))
     doc.recompute()
     doc.UndoMode = 1
-    made = api.make_all(doc, frame, kind="solid", then=[{"source": block, "kind": "solid"}])
-    assert [obj.Proxy.kind for obj in made] == ["cell", "feature", "feature", "toolpath"]
-    assert made[3].Status == "infeasible" and "CLEARANCE" in made[3].Issues and made[3].Message
+    stages = api.make_all(doc, frame, kind="solid", then=[{"source": block, "kind": "solid"}])
+    assert [obj.Proxy.kind for obj in stages] == ["cell", "feature", "feature", "toolpath"]
+    assert (
+        stages[3].Status == "infeasible" and "CLEARANCE" in stages[3].Issues and stages[3].Message
+    )
     (group,) = [obj for obj in doc.Objects if obj.Label.startswith("Job ")]
-    assert set(group.Group) == set(made)
+    assert set(group.Group) == set(stages)
     doc.undo()
     assert doc.Objects == [frame, block]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids on hubs in documents: hub found, chosen, given, or part of the solid; meshes; what is refused."""
+"""Solids on hubs in documents: the hub found, selected, given, or part of the solid; meshes;
+refusals."""
 
 import math
 
@@ -21,29 +22,30 @@ CONE = math.atan2(HUB, HEIGHT)
 FAST = {"layer_height": 6, "chord_error": 0.1, "bead_spacing": 5}
 
 
-def hub_shape(way=1.0):
-    """A cylinder of 50 mm and, on it, the lower part of a cone, along Z or against it."""
+def hub_shape(direction=1.0):
+    """Return a cylinder of 50 mm with the lower part of a cone on it, along Z or against it."""
     low, cone = (
         Part.makeCylinder(HUB, 50.0),
         Part.makeCone(HUB, HUB * 0.5, 0.5 * HEIGHT, App.Vector(0, 0, 50)),
     )
     shape = low.fuse(cone).removeSplitter()
     shape.Placement = App.Placement(
-        App.Vector(), App.Rotation(App.Vector(1, 0, 0), 0 if way > 0 else 180)
+        App.Vector(), App.Rotation(App.Vector(1, 0, 0), 0 if direction > 0 else 180)
     )
     return shape
 
 
 def blade_shapes(hub, heights=(8.0, 60.0), around=3):
-    """Bars through the hub, cut off by it: their feet lie on the cylinder and on the cone."""
-    found = []
+    """Return bars through the hub without their inside: their feet are on the cylinder and on the
+    cone."""
+    blades = []
     for z in heights:
         for k in range(around):
             bar = Part.makeBox(60.0, 14.0, 30.0, App.Vector(0, -7, z))
             bar.rotate(App.Vector(), UP, 360.0 * k / around)
             bar.Placement = hub.Placement.multiply(bar.Placement)
-            found += [max(bar.cut(hub).Solids, key=lambda solid: solid.Volume)]
-    return found
+            blades += [max(bar.cut(hub).Solids, key=lambda solid: solid.Volume)]
+    return blades
 
 
 def add(doc, shape, label):
@@ -66,8 +68,9 @@ def faces_of(hub, kind):
     ]
 
 
-def off(points, layer, height=6.0):
-    """How far points are from the layer of the cylinder or of the cone, the nearer."""
+def layer_distance(points, layer, height=6.0):
+    """Return the distance of points from the layer of the cylinder or of the cone, whichever is
+    nearer."""
     rho, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     cone = (rho - HUB) * math.cos(CONE) + (z - 50.0) * math.sin(CONE)
     return np.minimum(np.abs(rho - HUB - height * layer), np.abs(cone - height * layer))
@@ -88,11 +91,11 @@ def test_the_hub_is_found_and_each_blade_lies_on_its_surface(thruster):
     assert len(starts) == 2
     for index, layer in enumerate(path.layers):
         level = index - starts[int(index >= starts[1])]
-        assert all(off(bead.points, level).max() < 1e-6 for bead in layer.beads)
+        assert all(layer_distance(bead.points, level).max() < 1e-6 for bead in layer.beads)
 
 
 def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, monkeypatch):
-    """Blades grown until they meet, one after the other: the nozzle touches the one before."""
+    """Blades that grow together, one after the other: the nozzle touches the earlier one."""
     hub = hub_shape()
     blades = add(doc, Part.Compound(blade_shapes(hub, (8.0,), 12)), "Blades")
     feature = api.make_developable_feature(
@@ -100,18 +103,19 @@ def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, monkeyp
     )
     monkeypatch.setattr(
         estimated_size, "SECONDS_A_TILT", estimated_size.LARGE_SECONDS
-    )  # one point takes as long as that
+    )  # one point takes that long
 
-    def told(issue):
+    def report(issue):
         assert issue.code == estimated_size.LARGE_CODE
         raise KeyboardInterrupt
 
-    with pytest.raises(KeyboardInterrupt), api.told_to(lambda *_: None, told):
+    with pytest.raises(KeyboardInterrupt), api.told_to(lambda *_: None, report):
         api.make_toolpath(doc, feature)
 
 
 def test_contours_follow_the_exact_solid_not_its_mesh(doc):
-    """A round boss on a cylinder: its beads are half a spacing inside of the bore's cylinder, on every layer."""
+    """The beads of a round boss on a cylinder are half a spacing inside of the boss's cylinder, on
+    every layer."""
     hub = Part.makeCylinder(40.0, 100.0)
     boss = Part.makeCylinder(18.0, 70.0, App.Vector(0, 0, 50), App.Vector(1, 0, 0)).cut(hub)
     feature = api.make_developable_feature(
@@ -123,10 +127,11 @@ def test_contours_follow_the_exact_solid_not_its_mesh(doc):
         chord_error=0.02,
     )
     path = api.result(api.make_toolpath(doc, feature))
-    for index, layer in enumerate(path.layers[:6]):  # the next one runs along the boss' end
+    for index, layer in enumerate(path.layers[:6]):  # the next one runs along the boss's end
         outer = max((bead for bead in layer.beads if bead.closed), key=lambda bead: bead.length)
         x, y, z = outer.points.T
-        # geodesic distance to the boss' rim is hard to write down; across the hub's axis it is a height
+        # the geodesic distance to the boss's rim has no simple formula; across the hub's axis it is
+        # a height
         top = outer.points[np.argmax(z)]
         assert top[2] == pytest.approx(50.0 + 18.0 - 2.0, abs=0.03)
         assert np.hypot(x, y) == pytest.approx(np.full(len(x), 40.0 + 5.0 * index), abs=1e-9)
@@ -139,18 +144,20 @@ def test_contours_follow_the_exact_solid_not_its_mesh(doc):
 def test_faces_chosen_or_base_given_are_taken(thruster):
     doc, hub, _ = thruster
     upper = add(doc, Part.Compound(blade_shapes(hub.Shape, (60.0,))), "Upper")
-    chosen = api.make_developable_feature(doc, upper, hub, faces_of(hub, "Cone"), **FAST)
-    given = api.make_developable_feature(
+    by_faces = api.make_developable_feature(doc, upper, hub, faces_of(hub, "Cone"), **FAST)
+    by_base = api.make_developable_feature(
         doc, upper, base_radius=HUB, base_height=HEIGHT, base_axis="0 0 50 0 0 1", **FAST
     )
-    for feature in (chosen, given):
+    for feature in (by_faces, by_base):
         (group,) = api.result(feature).groups
         assert (group.base.surface.radius, group.base.surface.height) == pytest.approx(
             (HUB, HEIGHT)
         )
-    one, other = (api.result(api.make_toolpath(doc, feature)) for feature in (chosen, given))
-    assert one.bead_count == other.bead_count and one.length == pytest.approx(
-        other.length, rel=1e-6
+    from_faces, from_base = (
+        api.result(api.make_toolpath(doc, feature)) for feature in (by_faces, by_base)
+    )
+    assert from_faces.bead_count == from_base.bead_count and from_faces.length == pytest.approx(
+        from_base.length, rel=1e-6
     )
 
 
@@ -166,7 +173,7 @@ def test_a_cone_that_points_down_is_as_good(doc):
     np.testing.assert_allclose(group.base.frame[:3, 2], [0, 0, -1], atol=1e-12)
     path = api.result(api.make_toolpath(doc, feature))
     for index, _, bead in path:
-        assert off(bead.points * [1.0, 1.0, -1.0], index).max() < 1e-6
+        assert layer_distance(bead.points * [1.0, 1.0, -1.0], index).max() < 1e-6
 
 
 @pytest.mark.long
@@ -183,10 +190,10 @@ def test_the_hub_may_be_one_of_the_solids_or_fused_with_them(thruster):
     assert paths[0].length == pytest.approx(paths[1].length, rel=1e-6)
     fused = add(doc, hub.Shape.multiFuse(upper), "Fused")
     cones = faces_of(fused, "Cone")
-    whole = api.make_developable_feature(doc, fused, faces=cones, **FAST)
-    path = api.result(api.make_toolpath(doc, whole))
+    fused_feature = api.make_developable_feature(doc, fused, faces=cones, **FAST)
+    path = api.result(api.make_toolpath(doc, fused_feature))
     for index, _, bead in path:
-        assert off(bead.points, index).max() < 1e-6
+        assert layer_distance(bead.points, index).max() < 1e-6
     only = api.result(
         api.make_toolpath(
             doc,
@@ -205,8 +212,10 @@ def test_meshes_are_solids_too_and_repairs_are_told(thruster):
     exact = api.make_developable_feature(doc, blades, hub, **FAST)
     scanned = api.make_developable_feature(doc, mesh, hub, **FAST)
     assert scanned.Solids == 6
-    one, other = (api.result(api.make_toolpath(doc, feature)) for feature in (exact, scanned))
-    assert one.length == pytest.approx(other.length, rel=1e-3)
+    from_solid, from_mesh = (
+        api.result(api.make_toolpath(doc, feature)) for feature in (exact, scanned)
+    )
+    assert from_solid.length == pytest.approx(from_mesh.length, rel=1e-3)
     flipped = [
         triangle[::-1] if k % 5 == 0 else triangle
         for k, triangle in enumerate(loose(blades.Shape.Solids[0]))
@@ -229,7 +238,7 @@ def loose(solid):
 
 def test_what_cannot_be_is_refused_where_it_stands(thruster):
     doc, hub, blades = thruster
-    away = add(doc, Part.makeBox(10, 10, 10, App.Vector(80, 0, 10)), "Away")
+    distant = add(doc, Part.makeBox(10, 10, 10, App.Vector(80, 0, 10)), "Away")
     bore = add(doc, Part.makeCylinder(60.0, 50.0).cut(Part.makeCylinder(HUB, 50.0)), "Bore")
     sheet = add(doc, blades.Shape.Faces[0], "Sheet")
     inner = [
@@ -239,13 +248,13 @@ def test_what_cannot_be_is_refused_where_it_stands(thruster):
     ]
     flat = faces_of(hub, "Plane")
     for arguments, code, where in (
-        ((away, hub), "NOT_ON_HUB", "Away"),
+        ((distant, hub), "NOT_ON_HUB", "Away"),
         ((blades, bore, inner), "INNER_FACE", f"Bore {inner[0]}"),
         ((blades, hub, flat[:1]), "NOT_DEVELOPABLE", f"Hub {flat[0]}"),
         ((blades, hub, ["Face99"]), "BAD_FACES", ""),
         ((sheet, hub), "NO_SOLID", "Sheet"),
-        ((away,), "NO_HUB", ""),
-        ((blades, away), "NO_BASE", "Away"),
+        ((distant,), "NO_HUB", ""),
+        ((blades, distant), "NO_BASE", "Away"),
     ):
         with pytest.raises(InputError) as caught:
             api.make_developable_feature(doc, *arguments, **FAST)
@@ -267,44 +276,44 @@ def test_what_cannot_be_is_refused_where_it_stands(thruster):
 
 def test_solids_from_exact_shapes_are_told_what_to_do_with_shapes(thruster):
     doc, hub, blades = thruster
-    far = blades.Shape.copy().transformGeometry(
+    distant = blades.Shape.copy().transformGeometry(
         App.Matrix(*(np.diag([1.0, 1.0, 1.0, 25.4]) / 25.4).ravel())
     )
-    small = add(doc, far, "Small")
-    boxes = [Part.makeBox(10, 10, 30, App.Vector(*at)) for at in ((40, 0, 5), (50, 10, 5))]
+    small = add(doc, distant, "Small")
+    boxes = [Part.makeBox(10, 10, 30, App.Vector(*corner)) for corner in ((40, 0, 5), (50, 10, 5))]
     touching = add(
         doc, Part.makeSolid(Part.makeShell([*boxes[0].Faces, *boxes[1].Faces])), "Touching"
     )
     bracket = add(
         doc, Part.makeBox(50, 5, 40).fuse(Part.makeBox(5, 50, 40)).removeSplitter(), "Bracket"
     )
-    for arguments, code, told, untold in (
+    for arguments, code, expected, untold in (
         ((small, hub), "NOT_ON_HUB", "not on the hub", "unit"),
         (
             (touching, hub),
             "NOT_ON_HUB",
             "the solid passes Hub",
             "mesh",
-        ),  # that it touches itself along an edge is mended
+        ),  # the contact along its own edge is repaired
         ((bracket,), "NO_HUB", "for a flat base use kind: solid", "mesh"),
     ):
         with pytest.raises(InputError) as caught:
             api.make_developable_feature(doc, *arguments, **FAST)
         assert caught.value.code == code, caught.value.line()
-        assert told in caught.value.message and untold not in caught.value.message
+        assert expected in caught.value.message and untold not in caught.value.message
 
 
 def test_a_bead_width_that_a_macro_gives_is_meant(thruster):
     doc, hub, blades = thruster
     feature = api.make_developable_feature(doc, blades, hub, **FAST)
-    plain, meant = api.make_toolpath(doc, feature), api.make_toolpath(doc, feature, bead_width=8)
-    assert (plain.FillWidth, meant.FillWidth) == (
+    plain, explicit = api.make_toolpath(doc, feature), api.make_toolpath(doc, feature, bead_width=8)
+    assert (plain.FillWidth, explicit.FillWidth) == (
         "auto",
         "bead_width",
-    ) and plain.BeadWidth == meant.BeadWidth
-    assert api.result(plain).length != api.result(meant).length
+    ) and plain.BeadWidth == explicit.BeadWidth
+    assert api.result(plain).length != api.result(explicit).length
     plain.FillWidth = "bead_width"
-    assert api.recompute(doc) is None and api.result(plain).length == api.result(meant).length
+    assert api.recompute(doc) is None and api.result(plain).length == api.result(explicit).length
 
 
 def test_a_document_keeps_the_solids_and_knows_when_they_change(thruster, tmp_path):
@@ -334,37 +343,38 @@ def toolpath_name(document):
 
 
 def test_what_beads_lay_beside_solids_on_a_hub_is_told(doc):
-    """A fin of 3 mm under beads of 6 mm with round ends, layer by layer; a block wide enough is no news."""
+    """A fin of 3 mm under beads of 6 mm with round ends is reported layer by layer; a block that is
+    wide enough gives no message."""
     rod = doc.addObject("Part::Feature", "Rod")
     rod.Shape = Part.makeCylinder(20.0, 100.0)
-    found = {}
+    toolpaths = {}
     for thick in (3.0, 24.0):  # the block ends on a cylinder, and is ten layers high
         fin = doc.addObject("Part::Feature", "Fin")
-        whole = Part.makeBox(
+        block = Part.makeBox(
             24.0 if thick == 3.0 else 30.0, thick, 40.0, App.Vector(15.0, -0.5 * thick, 30.0)
         )
-        fin.Shape = whole.common(Part.makeCylinder(40.0, 100.0)).cut(rod.Shape)
+        fin.Shape = block.common(Part.makeCylinder(40.0, 100.0)).cut(rod.Shape)
         spacing = 6.0 if thick == 3.0 else 4.0
         feature = api.make_developable_feature(
             doc, fin, rod, layer_height=2.0, bead_spacing=spacing, chord_error=0.1
         )
-        found[thick] = api.result(api.make_toolpath(doc, feature))
-    narrow, wide = found[3.0], found[24.0]
-    part, left, beside = narrow.checks.volumes
+        toolpaths[thick] = api.result(api.make_toolpath(doc, feature))
+    narrow, wide = toolpaths[3.0], toolpaths[24.0]
+    part_volume, missed, beside = narrow.checks.volumes
     outside = Part.makeBox(24.0, 3.0, 40.0, App.Vector(15.0, -1.5, 30.0)).cut(rod.Shape).Volume
-    assert part == pytest.approx(outside, rel=1e-3) and left == pytest.approx(0.0, abs=1.0)
+    assert part_volume == pytest.approx(outside, rel=1e-3) and missed == pytest.approx(0.0, abs=1.0)
     laid = 2.0 * sum(6.0 * bead.length + 9.0 * np.pi for _, _, bead in narrow)
-    assert beside == pytest.approx(laid - part, rel=0.02)
-    (issue,) = [one for one in narrow.issues if one.code == "DEPOSITED_BESIDE"]
+    assert beside == pytest.approx(laid - part_volume, rel=0.02)
+    (issue,) = [candidate for candidate in narrow.issues if candidate.code == "DEPOSITED_BESIDE"]
     assert issue.level == "warning" and f"{beside / 1000.0:.3g} cm3" in issue.message
-    assert not {"DEPOSITED_BESIDE", "NOT_DEPOSITED"} & {one.code for one in wide.issues}
-    part, left, beside = wide.checks.volumes
+    assert not {"DEPOSITED_BESIDE", "NOT_DEPOSITED"} & {candidate.code for candidate in wide.issues}
+    part_volume, missed, beside = wide.checks.volumes
     laid = 2.0 * 4.0 * sum(bead.length for _, _, bead in wide)
-    assert wide.checks.twice == pytest.approx(laid - (part - left + beside), rel=1e-6)
-    assert ("DEPOSITED_TWICE" in {one.code for one in wide.issues}) == (
-        wide.checks.twice > 0.03 * part
+    assert wide.checks.twice == pytest.approx(laid - (part_volume - missed + beside), rel=1e-6)
+    assert ("DEPOSITED_TWICE" in {candidate.code for candidate in wide.issues}) == (
+        wide.checks.twice > 0.03 * part_volume
     )
     assert (
-        part == pytest.approx(sum(24.0 * 40.0 * 2.0 for _ in wide.layers), rel=0.1)
-        and left + beside < 0.03 * part
+        part_volume == pytest.approx(sum(24.0 * 40.0 * 2.0 for _ in wide.layers), rel=0.1)
+        and missed + beside < 0.03 * part_volume
     )

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids in plane layers in documents: sections against OpenCASCADE's own, beads inside the shape, meshes, refusals."""
+"""Solids in plane layers in documents: sections equal OpenCASCADE's, beads are inside the shape;
+meshes, refusals."""
 
 import dataclasses
 from pathlib import Path
@@ -25,7 +26,7 @@ EXAMPLE = Path(__file__).parents[2] / "resources" / "examples" / "bracket.step"
 
 
 def flange():
-    """A plate with a collar, a bore through both, six holes and a ball's half sunk into it."""
+    """Return a plate with a collar, a bore through both, six holes and half a ball sunk into it."""
     shape = Part.makeCylinder(50, 20).fuse(Part.makeCylinder(28, 45)).cut(Part.makeCylinder(15, 45))
     for k in range(6):
         hole = Part.makeCylinder(5, 20, App.Vector(39, 0, 0))
@@ -35,7 +36,7 @@ def flange():
 
 
 def leaning():
-    """A torus that leans, with a bar through it."""
+    """Return a leaning torus with a bar through it."""
     shape = Part.makeTorus(35, 9).fuse(Part.makeBox(90, 8, 8, App.Vector(-45, -4, -4)))
     shape.rotate(App.Vector(), App.Vector(1, 2, 0), 35)
     return shape
@@ -78,7 +79,7 @@ def slices(solids, **values):
 
 
 def section(shape, height):
-    """Area that OpenCASCADE finds of a shape in the plane at a height."""
+    """Return the area of a shape's section at a height, by OpenCASCADE."""
     box = shape.BoundBox
     sheet = Part.makePlane(
         4 * box.DiagonalLength,
@@ -94,50 +95,52 @@ def section(shape, height):
 def test_sections_are_those_of_the_kernel(doc, name):
     shape = SHAPES[name]()
     feature = api.make_solid_feature(doc, part(doc, shape), **{**FAST, "chord_error": 0.05})
-    found = slices(api.result(feature))
+    layers = slices(api.result(feature))
     low = (
         shape.BoundBox.ZMin
         if name != "leaning"
         else float(api.result(feature).groups[0].base.frame[2, 3])
     )
-    assert len(found) >= 7
-    for one in found:
-        area = sum(region.area for region in one.regions)
-        border = sum(region.shape.length for region in one.regions)
+    assert len(layers) >= 7
+    for layer in layers:
+        area = sum(region.area for region in layer.regions)
+        border = sum(region.shape.length for region in layer.regions)
         assert area == pytest.approx(
-            section(shape, low + 5.0 * one.number + 2.5), abs=0.05 * border
+            section(shape, low + 5.0 * layer.number + 2.5), abs=0.05 * border
         )
 
 
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.always("flange", "leaning")
 def test_beads_lie_in_the_shape(doc, name):
-    """Where the part was cut, half a layer above: inside, as the kernel says, or on a bead that is alone in a neck."""
+    """At the height of the cut, half a layer above, the points are inside according to the kernel,
+    or on a single bead in a neck."""
     shape = SHAPES[name]()
     toolpath = api.make_toolpath(doc, api.make_solid_feature(doc, part(doc, shape), **FAST))
-    made = api.result(toolpath)
-    beads = [bead for _, _, bead in made]
+    result = api.result(toolpath)
+    beads = [bead for _, _, bead in result]
     points = np.vstack(
         [bead.points[:: max(1, len(bead) // 8)] for bead in beads if bead.role.kind != "centre"]
     )
     lifted = points + (0.0, 0.0, 2.5)
     rows = np.random.default_rng(1).permutation(len(lifted))[:150]
-    places = [App.Vector(*lifted[k]) for k in rows]
+    positions = [App.Vector(*lifted[k]) for k in rows]
     off = [
-        shape.distToShape(Part.Vertex(place))[0]
-        for place in places
-        if not shape.isInside(place, 1e-6, True)
+        shape.distToShape(Part.Vertex(position))[0]
+        for position in positions
+        if not shape.isInside(position, 1e-6, True)
     ]
     assert not off or max(off) < 0.1
     assert (
-        made.checks.on_part[0] == min(20_000, sum(map(len, beads)))
-        and made.checks.on_part[1] <= made.checks.on_part[2]
+        result.checks.on_part[0] == min(20_000, sum(map(len, beads)))
+        and result.checks.on_part[1] <= result.checks.on_part[2]
     )
     assert not [issue for issue in api.issues(toolpath) if issue.level == "error"]
 
 
 def deposited_volume(toolpath):
-    """Volume of all beads, mm3: the sum of length, mean width and layer height of their pieces."""
+    """Return the volume of all beads in mm3: the sum of length, mean width and layer height of
+    their segments."""
     volume = 0.0
     for _, _, bead in toolpath:
         points = bead.points
@@ -157,15 +160,17 @@ def test_a_mesh_and_the_shape_it_is_of_are_filled_alike(doc):
         api.make_toolpath(doc, api.make_solid_feature(doc, mesh(doc, flange()), **FAST))
     )
     assert len(exact.layers) == len(scanned.layers)
-    # beads of variable width divide the same volume into other lengths where a chord error moves a corner
+    # where a chord error moves a corner, beads of variable width divide the same volume into other
+    # lengths
     assert deposited_volume(exact) == pytest.approx(deposited_volume(scanned), rel=0.005)
     assert exact.length == pytest.approx(scanned.length, rel=0.02)
-    (whole, *shares), (_, *scanned_shares) = exact.checks.volumes, scanned.checks.volumes
-    assert shares == pytest.approx(scanned_shares, abs=0.005 * whole)
+    (volume, *shares), (_, *scanned_shares) = exact.checks.volumes, scanned.checks.volumes
+    assert shares == pytest.approx(scanned_shares, abs=0.005 * volume)
 
 
 def test_several_objects_and_solids_that_touch(doc):
-    """A plate in two halves and a rod on it from another object: one part; with a second rod beside: two islands below."""
+    """A plate in two halves and a rod on it from another object are one part; a second rod next to
+    it makes two islands below."""
     halves = Part.makeCompound(
         [Part.makeBox(30, 40, 10), Part.makeBox(30, 40, 10, App.Vector(30, 0, 0))]
     )
@@ -173,9 +178,9 @@ def test_several_objects_and_solids_that_touch(doc):
     beside = part(doc, Part.makeCylinder(10, 30, App.Vector(90, 20, 0)), "Beside")
     feature = api.make_solid_feature(doc, part(doc, halves), further=[rod, beside], **FAST)
     assert feature.Solids == 4 and feature.Height.Value == pytest.approx(30.0)
-    found = slices(api.result(feature))
-    assert [len(one.regions) for one in found] == [2, 2, 2, 2, 2, 2]
-    assert sum(region.area for region in found[0].regions) == pytest.approx(
+    layers = slices(api.result(feature))
+    assert [len(layer.regions) for layer in layers] == [2, 2, 2, 2, 2, 2]
+    assert sum(region.area for region in layers[0].regions) == pytest.approx(
         60 * 40 + np.pi * 100, rel=0.002
     )
 
@@ -183,10 +188,10 @@ def test_several_objects_and_solids_that_touch(doc):
 def test_what_stands_on_a_substrate_is_kept_clear_of_it(doc):
     wall = part(doc, Part.makeBox(10, 60, 60, App.Vector(-10, -10, 0)), "Wall")
     feature = api.make_solid_feature(doc, part(doc, Part.makeBox(40, 40, 20)), wall, **FAST)
-    made = api.result(api.make_toolpath(doc, feature))
-    assert made.surroundings[0].name == "Wall"
-    leaning_axes = [bead for _, _, bead in made if (bead.tool[:, 2] < 1.0 - 1e-6).any()]
-    assert leaning_axes and all((bead.build[:, 2] > 1.0 - 1e-9).all() for _, _, bead in made)
+    result = api.result(api.make_toolpath(doc, feature))
+    assert result.surroundings[0].name == "Wall"
+    leaning_axes = [bead for _, _, bead in result if (bead.tool[:, 2] < 1.0 - 1e-6).any()]
+    assert leaning_axes and all((bead.build[:, 2] > 1.0 - 1e-9).all() for _, _, bead in result)
 
 
 def test_the_object_is_kept_with_the_document(doc, tmp_path):
@@ -194,23 +199,24 @@ def test_the_object_is_kept_with_the_document(doc, tmp_path):
         doc, part(doc, Part.makeBox(30, 30, 20)), direction="auto", cut_at="bottom", **FAST
     )
     toolpath = api.make_toolpath(doc, feature)
-    before = api.result(toolpath)
+    original = api.result(toolpath)
     path = str(tmp_path / "kept.FCStd")
     doc.saveCopy(path)
     again = App.openDocument(path)
     try:
-        other = again.getObject(toolpath.Name)
-        assert other.Status == "up to date" and again.getObject(feature.Name).Direction == "auto"
-        for (_, _, one), (_, _, two) in zip(before, api.result(other), strict=True):
-            np.testing.assert_array_equal(one.points, two.points)
-        assert api.result(other).family == "solid"
+        reopened = again.getObject(toolpath.Name)
+        assert reopened.Status == "up to date" and again.getObject(feature.Name).Direction == "auto"
+        for (_, _, bead), (_, _, two) in zip(original, api.result(reopened), strict=True):
+            np.testing.assert_array_equal(bead.points, two.points)
+        assert api.result(reopened).family == "solid"
     finally:
         App.closeDocument(again.Name)
 
 
 @pytest.mark.parametrize("size", [0.1, 10_000.0])
 def test_tiny_and_huge_parts(doc, size):
-    """With the defaults told why not; with layers and beads that fit planned as any."""
+    """With the defaults the message gives the reason; with suitable layers and beads the part is
+    planned."""
     obj = part(doc, Part.makeBox(size, size, size))
     values = {
         "layer_height": 0.2 * size,
@@ -221,9 +227,9 @@ def test_tiny_and_huge_parts(doc, size):
     if size > 1.0:
         values["chord_error"] = 10.0
     feature = api.make_solid_feature(doc, obj, **values)
-    made = api.result(api.make_toolpath(doc, feature))
-    assert len(made.layers) == 5
-    assert made.length * (0.2 * size) ** 2 == pytest.approx(size**3, rel=0.05)
+    result = api.result(api.make_toolpath(doc, feature))
+    assert len(result.layers) == 5
+    assert result.length * (0.2 * size) ** 2 == pytest.approx(size**3, rel=0.05)
     if size < 1.0:
         with pytest.raises(InputError) as caught:
             api.make_toolpath(doc, api.make_solid_feature(doc, obj, layer_height=1))
@@ -235,27 +241,34 @@ def test_tiny_and_huge_parts(doc, size):
 
 
 def test_a_damaged_mesh_is_filled_as_the_whole_one(doc):
-    """A hole closed and facets turned back: what is inside does not change."""
-    whole = mesh(doc, leaning(), 0.5)
-    points, triangles = whole.Mesh.Topology
-    places, rows = np.array([tuple(point) for point in points]), np.array(triangles)
+    """Repairs close a hole and flip facets back, without a change of the inside."""
+    intact_mesh = mesh(doc, leaning(), 0.5)
+    points, triangles = intact_mesh.Mesh.Topology
+    vertices, rows = np.array([tuple(point) for point in points]), np.array(triangles)
     size = [
-        float(np.linalg.norm(np.ptp(places[rows[(rows == k).any(axis=1)]].reshape(-1, 3), axis=0)))
+        float(
+            np.linalg.norm(np.ptp(vertices[rows[(rows == k).any(axis=1)]].reshape(-1, 3), axis=0))
+        )
         for k in range(50)
     ]
     gone = (rows == int(np.argmin(size))).any(axis=1)
     rows[::9] = rows[::9, ::-1]
     damaged = doc.addObject("Mesh::Feature", "Damaged")
     damaged.Mesh = Mesh.Mesh([[points[k] for k in row] for row in rows[~gone]])
-    made = [
-        api.make_solid_feature(doc, obj, mend=1.01 * min(size), **FAST) for obj in (whole, damaged)
+    features = [
+        api.make_solid_feature(doc, obj, mend=1.01 * min(size), **FAST)
+        for obj in (intact_mesh, damaged)
     ]
-    assert {issue.code for issue in api.issues(made[1])} >= {"MENDED", "MESH_REPAIRED"}
-    assert f"{min(size):.3g} mm across" in " ".join(issue.message for issue in api.issues(made[1]))
-    one, other = (api.result(api.make_toolpath(doc, feature)) for feature in made)
-    assert other.length == pytest.approx(one.length, rel=2e-3)
+    assert {issue.code for issue in api.issues(features[1])} >= {"MENDED", "MESH_REPAIRED"}
+    assert f"{min(size):.3g} mm across" in " ".join(
+        issue.message for issue in api.issues(features[1])
+    )
+    from_intact, from_damaged = (
+        api.result(api.make_toolpath(doc, feature)) for feature in features
+    )
+    assert from_damaged.length == pytest.approx(from_intact.length, rel=2e-3)
     with pytest.raises(InputError) as caught:
-        api.change(made[1], mend=0.9 * min(size))
+        api.change(features[1], mend=0.9 * min(size))
     assert caught.value.code == "OPEN_MESH" and "strategy.mend" in caught.value.message
 
 
@@ -285,66 +298,73 @@ def test_what_has_no_inside_is_refused(doc):
 
 
 def test_a_margin_far_wider_than_the_part_is_told_before_its_layers_are_filled(doc):
-    """Forty layers of 0.6 m, each of which is another one: one and a half minutes of few points."""
+    """Forty different layers of 0.6 m would take one and a half minutes for few points."""
     angle = (
         Part.makeBox(50, 40, 15)
         .fuse(Part.makeBox(15, 40, 40))
         .cut(Part.makeCylinder(8, 60, App.Vector(32, 20, -5)))
     )
-    part = doc.addObject("Part::Feature", "Bracket")
-    part.Shape = angle
+    bracket = doc.addObject("Part::Feature", "Bracket")
+    bracket.Shape = angle
     wide = {"layer_height": 10, "bead_spacing": 10, "chord_error": 0.5}
-    told = [
-        api.issues(api.make_solid_feature(doc, part, margin=margin, **wide)) for margin in (5, 360)
+    messages = [
+        api.issues(api.make_solid_feature(doc, bracket, margin=margin, **wide))
+        for margin in (5, 360)
     ]
-    assert [[issue.code for issue in issues].count("LARGE") for issues in told] == [0, 1]
+    assert [[issue.code for issue in issues].count("LARGE") for issues in messages] == [0, 1]
 
 
 def balanced(doc, shape, **values):
-    """mm3 of the part, of what beads of 6 mm in layers of 4 mm leave of it and of what they lay beside it; and the codes."""
+    """Return the volume of the part, of the regions that beads of 6 mm in layers of 4 mm miss and
+    of the deposit outside, in mm3, and the codes."""
     toolpath = api.make_toolpath(
         doc,
         api.make_solid_feature(
             doc, part(doc, shape), layer_height=4.0, chord_error=0.1, bead_spacing=6.0, **values
         ),
     )
-    told = {issue.code: issue.message for issue in api.issues(toolpath)}
-    return api.result(toolpath).checks.volumes, told
+    messages = {issue.code: issue.message for issue in api.issues(toolpath)}
+    return api.result(toolpath).checks.volumes, messages
 
 
 def test_what_beads_leave_of_a_solid_and_lay_beside_it_is_told(doc):
-    """Of a block with a fin of 1 mm the fin, of one 1.5 mm higher than its layers so much; beside a wall half of a bead's
-    width what stands out."""
+    """The message names a fin of 1 mm on a block, the top of a block 1.5 mm higher than its layers,
+    and the overhang next to a wall of half a bead's width."""
     block = Part.makeBox(24, 24, 8)
-    (whole, corners, _), told = balanced(doc, block)
-    assert whole == pytest.approx(block.Volume) and not {"NOT_DEPOSITED", "DEPOSITED_BESIDE"} & set(
-        told
-    )
+    (volume, corners, _), messages = balanced(doc, block)
+    assert volume == pytest.approx(block.Volume) and not {
+        "NOT_DEPOSITED",
+        "DEPOSITED_BESIDE",
+    } & set(messages)
     fin = Part.makeBox(30, 1, 8, App.Vector(24, 11.5, 0))  # narrower than any bead
-    (_, left, _), told = balanced(doc, block.fuse(fin).removeSplitter())
-    assert left - corners == pytest.approx(fin.Volume, rel=0.02)
-    assert f"about {left / 1000.0:.3g} of the 4.85" in told["NOT_DEPOSITED"]
-    (_, left, _), told = balanced(doc, Part.makeBox(24, 24, 9.5))
-    assert left - corners == pytest.approx(24 * 24 * 1.5, rel=0.02) and "NOT_DEPOSITED" in told
-    for high, news in ((8.1, True), (8.01, False)):  # 4.0 and 2.9 % of it
-        (_, left, _), told = balanced(doc, Part.makeBox(24, 24, high))
+    (_, missed, _), messages = balanced(doc, block.fuse(fin).removeSplitter())
+    assert missed - corners == pytest.approx(fin.Volume, rel=0.02)
+    assert f"about {missed / 1000.0:.3g} of the 4.85" in messages["NOT_DEPOSITED"]
+    (_, missed, _), messages = balanced(doc, Part.makeBox(24, 24, 9.5))
+    assert (
+        missed - corners == pytest.approx(24 * 24 * 1.5, rel=0.02) and "NOT_DEPOSITED" in messages
+    )
+    for high, news in ((8.1, True), (8.01, False)):  # 4.0 and 2.9 % of the volume
+        (_, missed, _), messages = balanced(doc, Part.makeBox(24, 24, high))
         assert (
-            left - corners == pytest.approx(24 * 24 * (high - 8.0), rel=0.05)
-            and ("NOT_DEPOSITED" in told) == news
+            missed - corners == pytest.approx(24 * 24 * (high - 8.0), rel=0.05)
+            and ("NOT_DEPOSITED" in messages) == news
         )
     wall = Part.makeBox(60, 3.2, 8)
-    (whole, _, beside), told = balanced(doc, wall)  # a bead of half the usual width
-    assert beside < 0.05 * whole and "DEPOSITED_BESIDE" not in told
-    (whole, _, beside), told = balanced(doc, wall, widths="fixed")
-    assert beside > 0.8 * whole
+    (volume, _, beside), messages = balanced(doc, wall)  # a bead of half the usual width
+    assert beside < 0.05 * volume and "DEPOSITED_BESIDE" not in messages
+    (volume, _, beside), messages = balanced(doc, wall, widths="fixed")
+    assert beside > 0.8 * volume
     assert (
-        f"about {beside / 1000.0:.3g} cm3 of beads are outside the 1.54" in told["DEPOSITED_BESIDE"]
+        f"about {beside / 1000.0:.3g} cm3 of beads are outside the 1.54"
+        in messages["DEPOSITED_BESIDE"]
     )
 
 
 @pytest.mark.parametrize("lid", [22.0, None])
 def test_plane_layers_are_tried_where_curved_ones_have_no_room(doc, monkeypatch, lid):
-    """Two real brackets were told to need a slimmer nozzle, which did not help; in planes they get programs."""
+    """Two real brackets once got the advice to use a slimmer nozzle, which did not help; in planes
+    they get programs."""
     box = part(doc, Part.makeBox(20, 20, 20))
     fixtures = (
         []
@@ -358,20 +378,22 @@ def test_plane_layers_are_tried_where_curved_ones_have_no_room(doc, monkeypatch,
             Issue("error", "CLEARANCE", "the nozzle touches", 1, 0, 0),
         )
 
-        def kept_clear(made, of, *rest):
-            made = cleared(made, of, *rest)
+        def kept_clear(toolpath, feature_, *options):
+            toolpath = cleared(toolpath, feature_, *options)
             return (
-                made
-                if of.strategy.layers == "planes"
-                else dataclasses.replace(made, issues=(*made.issues, touches))
+                toolpath
+                if feature_.strategy.layers == "planes"
+                else dataclasses.replace(toolpath, issues=(*toolpath.issues, touches))
             )
 
         monkeypatch.setattr(toolpaths, "kept_clear", kept_clear)
-    made = api.make_toolpath(doc, feature)
-    told = [
-        str(issue.message) for issue in api.issues(made) if issue.code in ("REMEDY", "NO_REMEDY")
+    toolpath = api.make_toolpath(doc, feature)
+    messages = [
+        str(issue.message)
+        for issue in api.issues(toolpath)
+        if issue.code in ("REMEDY", "NO_REMEDY")
     ]
-    assert told == [
+    assert messages == [
         "the nozzle is not clear with `strategy.layers: planes` either (tested)"
         if lid is not None
         else "with `strategy.layers: planes` the nozzle is clear; the toolpath, but not the joint path, was planned with this change"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A change of any input marks what follows as stale at once, and a recompute renews exactly that."""
+"""A change of any input marks its dependants as stale at once, and a recompute renews exactly
+these."""
 
 import FreeCAD as App
 import pytest
@@ -40,27 +41,29 @@ def test_all_is_up_to_date_once_made_and_nothing_is_due(job):
     ],
 )
 def test_a_changed_parameter_marks_what_follows_at_once(job, stage, name, value, want):
-    before = [obj.Key for obj in job.stages]
+    old_keys = [obj.Key for obj in job.stages]
     setattr(getattr(job, stage), name, value)
     assert statuses(job) == want
     job.doc.recompute()
     assert statuses(job) == [OK] * 5
-    renewed = [obj.Key != key for obj, key in zip(job.stages, before, strict=True)]
+    renewed = [obj.Key != key for obj, key in zip(job.stages, old_keys, strict=True)]
     same = [
         name == "DepositionPoint" and obj == job.toolpath for obj in job.stages
-    ]  # where it stands is not for layers
-    assert renewed == [status == STALE and not one for status, one in zip(want, same, strict=True)]
+    ]  # layers do not depend on its location
+    assert renewed == [
+        status == STALE and not is_same for status, is_same in zip(want, same, strict=True)
+    ]
 
 
 def test_changing_it_back_needs_no_computing(job):
     keys = [obj.Key for obj in job.stages]
-    kept = api.result(job.toolpath)
+    result = api.result(job.toolpath)
     job.feature.LayerHeight = 9
     job.feature.LayerHeight = 10
     assert statuses(job)[1:] == [STALE] * 4
     job.doc.recompute()
     assert statuses(job) == [OK] * 5 and [obj.Key for obj in job.stages] == keys
-    assert api.result(job.toolpath) is kept
+    assert api.result(job.toolpath) is result
 
 
 def test_a_changed_shape_marks_what_follows_before_any_recompute(job):
@@ -73,12 +76,12 @@ def test_a_changed_shape_marks_what_follows_before_any_recompute(job):
 
 
 def test_moving_the_part_moves_the_path(job):
-    before = api.result(job.toolpath).layers[0].beads[0].points
+    old_points = api.result(job.toolpath).layers[0].beads[0].points
     job.part.Placement = App.Placement(App.Vector(100, 0, 7), App.Rotation())
     assert job.toolpath.Status == STALE
     job.doc.recompute()
-    after = api.result(job.toolpath).layers[0].beads[0].points
-    assert after - before == pytest.approx((after * 0) + [100, 0, 7], abs=1e-6)
+    new_points = api.result(job.toolpath).layers[0].beads[0].points
+    assert new_points - old_points == pytest.approx((new_points * 0) + [100, 0, 7], abs=1e-6)
 
 
 def test_labels_and_visibility_are_no_inputs(job):
@@ -124,7 +127,7 @@ def test_a_bad_parameter_fails_and_what_follows_waits(job, capfd, tmp_path):
     assert "Traceback" not in "".join(capfd.readouterr())
     with pytest.raises(InputError, match="LayerHeight"):
         api.recompute(job.doc)
-    assert len(api.result(job.toolpath).layers) == 8  # the last result is kept
+    assert len(api.result(job.toolpath).layers) == 8  # the last result stays
     job.feature.LayerHeight = 10
     job.doc.recompute()
     assert statuses(job) == [OK] * 5
@@ -169,7 +172,7 @@ def test_deleting_an_input_fails_what_needs_it_with_a_message(job, gone, capfd):
         "toolpath": "joint_path",
         "joint_path": "program",
     }
-    followers = [getattr(job, needed[gone])]  # a toolpath does without a cell
+    followers = [getattr(job, needed[gone])]  # a toolpath needs no cell
     job.doc.removeObject(getattr(job, gone).Name)
     for obj in followers:
         assert obj.Status == FAILED and "is missing; choose" in obj.Message

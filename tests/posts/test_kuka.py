@@ -615,7 +615,7 @@ def _refused_beside(mechanism):
 
 def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
     """The message names the file of the robot, or of its positioner or track."""
-    slow, told = (
+    slow, expected = (
         (*NOMINAL[:5], math.inf),
         json.loads((MECHANISMS / "motoman-motopos-d500.json").read_text(encoding="utf-8")),
     )
@@ -645,10 +645,10 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
             where=where,
         )
         assert message.endswith("; add `velocity` to the `<limit>` of each of its joints")
-    del told["joints"][1]["max_speed"]
-    (tmp_path / "mine.json").write_text(json.dumps({**told, "id": "mine"}), encoding="utf-8")
+    del expected["joints"][1]["max_speed"]
+    (tmp_path / "mine.json").write_text(json.dumps({**expected, "id": "mine"}), encoding="utf-8")
     message = _refused_beside(tmp_path / "mine.json")
-    assert f"the machine file of {told['title']} lacks; add `max_speed`" in message
+    assert f"the machine file of {expected['title']} lacks; add `max_speed`" in message
     (tmp_path / "turn.urdf").write_text(
         '<robot name="turn"><link name="foot"/><link name="arm"/><link name="plate"/>'
         '<joint name="tilt" type="revolute"><parent link="foot"/><child link="arm"/><axis xyz="0 1 0"/>'

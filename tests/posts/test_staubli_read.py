@@ -225,8 +225,8 @@ def test_random_programs_come_back(random_application, seed, motion, setup):
         readback.rotation_digits
     ) == pytest.approx(5e-6)
     np.testing.assert_allclose(readback.frame[:3, 3], [300.25, -20.5, 310.125], atol=1e-12)
-    wanted = Rotation.from_euler("XYZ", [0.1, -0.2, 3.0]).as_matrix()
-    np.testing.assert_allclose(readback.frame[:3, :3], wanted, atol=3e-7)
+    expected = Rotation.from_euler("XYZ", [0.1, -0.2, 3.0]).as_matrix()
+    np.testing.assert_allclose(readback.frame[:3, :3], expected, atol=3e-7)
 
 
 @pytest.mark.parametrize(("old", "new", "where", "why"), [
