@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The paper's parts as analytic meridians, sliced, and the paper's cell (Chalvin 2020, eqs. 20 to 22 and section 6)."""
+"""The paper's parts as analytic meridians, sliced, and the paper's cell (Chalvin 2020, eqs. 20 to
+22 and section 6)."""
 
 import dataclasses
 
@@ -58,15 +59,15 @@ PARTS = {"sphere": sphere, "laval nozzle": laval_nozzle, "intake funnel": intake
 @pytest.fixture(scope="session")
 def sliced():
     """sliced(part, layer_height, **strategy) -> Toolpath."""
-    made = {}
+    toolpaths = {}
 
     def make(part, layer_height, frame=None, process=None, **strategy):
         key = (part, layer_height, repr(frame), process, tuple(sorted(strategy.items())))
-        if key not in made:
+        if key not in toolpaths:
             wall = RevolvedWall(
                 Meridian.chained(PARTS[part]()), np.eye(4) if frame is None else frame
             )
-            made[key] = revolution.plan(
+            toolpaths[key] = revolution.plan(
                 wall,
                 RevolutionParameters(layer_height=layer_height, **strategy),
                 BuildDirectionParameters(),
@@ -74,14 +75,14 @@ def sliced():
                 NozzleParameters(),
                 113.0,
             )
-        return made[key]
+        return toolpaths[key]
 
     return make
 
 
 @pytest.fixture(scope="session")
 def cell_of():
-    """cell_of(toolpath, **cell parameters) -> Cell; the paper's cell and limits unless told otherwise."""
+    """cell_of(toolpath, **cell parameters) -> Cell; the paper's cell and limits by default."""
 
     def make(toolpath, **parameters):
         return cells.resolve(CellParameters(**{"limits": "paper", **parameters}), toolpath.frame)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every built-in positioner carries a part that has to be tilted: driven in the world by PyKDL chains of the numbers."""
+"""Every built-in positioner carries a part that must be tilted: driven in the world by PyKDL chains
+built from its file."""
 
 import json
 
@@ -21,10 +22,14 @@ STANDS = (1400.0, 120.0, -400.0, 0.0, 0.0, 30.0)
 def test_each_names_its_source_and_what_is_not_known():
     assert len(KNOWN) == 4
     for name in KNOWN:
-        told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
-        assert told["sources"] and told["limits"]["maker"]["source"] and told["payload"]["source"]
-        slow = all(joint["max_speed"] for joint in told["joints"])
-        assert slow or any("speeds were not found" in remark for remark in told["remarks"])
+        description = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
+        assert (
+            description["sources"]
+            and description["limits"]["maker"]["source"]
+            and description["payload"]["source"]
+        )
+        slow = all(joint["max_speed"] for joint in description["joints"])
+        assert slow or any("speeds were not found" in remark for remark in description["remarks"])
 
 
 @pytest.mark.parametrize("name", KNOWN)
@@ -49,14 +54,15 @@ def test_a_part_is_carried_and_kept_upright(sliced, name):
 
 
 def test_one_whose_speeds_are_known_is_offered_first():
+    """The positioner with known speeds is proposed first."""
     robot = machines.load("kuka-kr8-r2100-2-arc-hw")
-    assert [one.id for one in positioners(robot, 100.0, 50.0)] == [
+    assert [positioner.id for positioner in positioners(robot, 100.0, 50.0)] == [
         "motoman-motopos-d500",
         "kuka-dkp-400",
         "kuka-kp2-hv500",
         "abb-irbp-a250",
     ]
-    assert [one.id for one in positioners(robot, 450.0, 50.0)] == [
+    assert [positioner.id for positioner in positioners(robot, 450.0, 50.0)] == [
         "motoman-motopos-d500",
         "kuka-kp2-hv500",
     ]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The lower bound of the objective over all rotations: nothing that can be run goes below it, and it is near."""
+"""The lower bound of the objective over all rotations: no executable path is below it, and it is
+tight."""
 
 import dataclasses
 
@@ -17,12 +18,13 @@ from freecad_am.core.planning.points import gather
 from freecad_am.core.planning.task import Task
 
 BEADS = (0, 3)
-FINE = 240  # rotations at which a second search looks
+FINE = 240  # rotations of the second search
 
 
 @pytest.fixture(scope="module")
 def planned_on(sliced, cell_of, with_axis_6):
-    """planned_on(part, half) -> the task and some beads of a part laid coarsely, its last axis with limits or without."""
+    """planned_on(part, half) -> the task and some beads of a coarsely sliced part, with or without
+    limits of its last axis."""
 
     def plan(part, half):
         toolpath = sliced(part, 25.0, chord_error=1.0)
@@ -37,26 +39,26 @@ def planned_on(sliced, cell_of, with_axis_6):
 
 @pytest.fixture(scope="module")
 def planned(planned_on):
-    """Where the last axis has limits, so that every axis counts."""
+    """With limits of the last axis, so that every axis counts."""
     return planned_on("laval nozzle", 450.0)
 
 
 def summed(weights, joints):
-    """Eq. 17 of joints (n, axes) by complex numbers, which know no turns."""
+    """Eq. 17 of joints (n, axes) by complex numbers, which ignore whole turns."""
     step = np.angle(np.exp(1j * joints[1:]) / np.exp(1j * joints[:-1]))
     return float((step**2 @ weights).sum())
 
 
 def shortest(task, path):
-    """The least eq. 17 over rotations of FINE values at every point of a bead: what a search of pairs finds."""
+    """The least eq. 17 over FINE rotations at every point of a bead, by a search over pairs."""
     points = gather([path.bead], task.cell)
     phi = np.arange(FINE) * 2.0 * np.pi / FINE
     joints = np.stack(
         [task.raw_joints(points.select_points(np.full(FINE, i)), phi) for i in range(len(points))]
     )
-    away = np.exp(1j * (joints - task.middle))
+    phasors = np.exp(1j * (joints - task.middle))
     reachable = np.isfinite(joints).all(axis=2) & (
-        np.abs(np.angle(away))
+        np.abs(np.angle(phasors))
         <= np.where(
             task.continuous, np.inf, 0.5 * (task.cell.limits.upper - task.cell.limits.lower)
         )
@@ -68,34 +70,35 @@ def shortest(task, path):
         ]
     )
     reachable &= ratio >= path.threshold[:, None]
-    least = np.where(reachable[0], 0.0, np.inf)
-    for before, after, there in zip(joints, joints[1:], reachable[1:]):
+    minimum = np.where(reachable[0], 0.0, np.inf)
+    for previous, current, is_allowed in zip(joints, joints[1:], reachable[1:]):
         cost = sum(
-            weight * np.angle(np.exp(1j * (after[None, :, axis] - before[:, None, axis]))) ** 2
+            weight * np.angle(np.exp(1j * (current[None, :, axis] - previous[:, None, axis]))) ** 2
             for axis, weight in enumerate(task.weights)
         )
-        least = np.where(
-            there,
-            np.nanmin(np.where(np.isnan(cost), np.inf, cost) + least[:, None], axis=0),
+        minimum = np.where(
+            is_allowed,
+            np.nanmin(np.where(np.isnan(cost), np.inf, cost) + minimum[:, None], axis=0),
             np.inf,
         )
-    return float(least.min())
+    return float(minimum.min())
 
 
 @pytest.mark.parametrize("part", ["sphere", "laval nozzle", "intake funnel"])
 def test_the_default_is_within_one_percent(planned_on, part):
     task, paths = planned_on(part, None)
-    found = certificate.certified(task, paths)
-    for path, objective in zip(paths, found.objective):
+    result = certificate.certified(task, paths)
+    for path, objective in zip(paths, result.objective):
         assert objective == pytest.approx(summed(task.weights, path.joints), rel=1e-9)
-    assert (found.bound <= found.objective).all() and (found.gaps < 0.01).all()
+    assert (result.bound <= result.objective).all() and (result.gaps < 0.01).all()
 
 
 def test_no_course_of_the_rotation_goes_below(planned):
+    """No continuous rotation along the bead is below the bound."""
     task, paths = planned
     rng = np.random.default_rng(20261123)
-    found = certificate.certified(task, paths)
-    for path, bound in zip(paths, found.bound):
+    result = certificate.certified(task, paths)
+    for path, bound in zip(paths, result.bound):
         points = gather([path.bead], task.cell)
         share = np.linspace(0.0, 1.0, len(points))
         for size in 10.0 ** rng.uniform(-4.0, 0.5, 40):
@@ -108,7 +111,7 @@ def test_no_course_of_the_rotation_goes_below(planned):
 
 def test_a_search_of_all_pairs_finds_little_better(planned):
     task, paths = planned
-    path = min(paths, key=lambda one: len(one.phi))
+    path = min(paths, key=lambda candidate: len(candidate.phi))
     (bound,) = certificate.certified(task, [path]).bound
     assert bound <= shortest(task, path) * (1.0 + 1e-9)
 
@@ -126,8 +129,9 @@ def test_a_path_without_optimisation_has_a_gap(planned):
 
 
 def test_what_is_proved_does_not_depend_on_the_path_that_is_asked_about(planned):
+    """The bound does not depend on the path that is certified."""
     task, paths = planned
-    path = min(paths, key=lambda one: len(one.phi))
+    path = min(paths, key=lambda candidate: len(candidate.phi))
     phi = path.phi + 0.3 * path.bead.parameter
     turned = dataclasses.replace(
         path, phi=phi, joints=task.raw_joints(gather([path.bead], task.cell), phi)
@@ -137,9 +141,10 @@ def test_what_is_proved_does_not_depend_on_the_path_that_is_asked_about(planned)
 
 
 def test_the_best_course_closes_the_gap(planned):
-    """From a path that turns needlessly to within a percent of the bound, within limits, the condition as it has to be."""
+    """From a path that rotates needlessly to within a percent of the bound, within limits and with
+    the required conditioning."""
     task, paths = planned
-    for path in paths[:1]:  # the other one leans on the limits of its last axis
+    for path in paths[:1]:  # the other path is at the limits of its last axis
         points = gather([path.bead], task.cell)
         phi = path.phi + 0.3 * np.sin(3.0 * path.bead.parameter)
         turned = dataclasses.replace(path, phi=phi, joints=task.joints(points, phi))
@@ -181,33 +186,38 @@ def test_a_bead_that_joins_up_still_does(planned):
 
 
 def test_a_plan_with_its_gap_closed(sliced, cell_of, with_axis_6):
-    whole = sliced("laval nozzle", 25.0, chord_error=1.0)
-    cell = with_axis_6(cell_of(whole), 450.0)
-    toolpath = dataclasses.replace(whole, layers=whole.layers[:2])  # where no limit is in the way
+    """With its gap closed a plan is close to the bound."""
+    full_toolpath = sliced("laval nozzle", 25.0, chord_error=1.0)
+    cell = with_axis_6(cell_of(full_toolpath), 450.0)
+    toolpath = dataclasses.replace(
+        full_toolpath, layers=full_toolpath.layers[:2]
+    )  # where no limit is active
     usual = sum(path.objective for path in plan_joints(toolpath, cell, JointParameters()).beads)
     closed = plan_joints(toolpath, cell, JointParameters(certificate=True, close_gap=True))
     assert closed.feasible and 0.0 <= closed.optimality["gap"] < 0.005
-    assert closed.optimality["bound"] < 0.98 * usual  # lines alone are further off
+    assert closed.optimality["bound"] < 0.98 * usual  # linear rotations are farther from the bound
     total = closed.optimality["with_ways_between"]
-    ways = [
-        after.joints[0] - before.joints[-1] for before, after in zip(closed.beads, closed.beads[1:])
+    transitions = [
+        next_path.joints[0] - bead_path.joints[-1]
+        for bead_path, next_path in zip(closed.beads, closed.beads[1:])
     ]
     weights = Task(cell, 0, JointParameters()).weights
     assert total["objective"] == pytest.approx(
         sum(bead["objective"] for bead in closed.optimality["beads"])
-        + sum(way**2 @ weights for way in ways),
+        + sum(transition**2 @ weights for transition in transitions),
         rel=1e-9,
     )
     assert closed.optimality["bound"] * 0.97 < total["bound"] <= total["objective"]
 
 
 def wavy(rng, points, count):
-    """Joints (points, count, 3) of a made-up arm, smooth in rotation and along the bead, and where it may be."""
+    """Joints (points, count, 3) of a fictitious arm, smooth in rotation and along the bead, and
+    where they are allowed."""
     phi = -np.pi + np.arange(count) * 2.0 * np.pi / count
     along = np.linspace(0.0, 1.0, points)[:, None]
     joints = np.zeros((points, count, 3))
     for axis in range(3):
-        joints[..., axis] = rng.integers(-1, 2) * phi  # whole turns too
+        joints[..., axis] = rng.integers(-1, 2) * phi  # including whole turns
         for order in (1, 2, 3):
             size, turned, drift = rng.normal() / order, rng.uniform(0.0, 6.0), rng.normal() * 2.0
             joints[..., axis] += size * np.cos(order * phi + turned + drift * along)
@@ -220,34 +230,35 @@ def wavy(rng, points, count):
     "seed", [0, 1, *(pytest.param(k, marks=pytest.mark.long) for k in range(2, 34))]
 )
 def test_made_up_arms_against_a_search_on_a_much_finer_lattice(seed):
-    points, coarse, parts = 9, 180, 4 if seed < 2 else 8
-    joints, free = wavy(np.random.default_rng(seed), points, coarse * parts)
+    points, coarse, subdivisions = 9, 180, 4 if seed < 2 else 8
+    joints, free = wavy(np.random.default_rng(seed), points, coarse * subdivisions)
     weights = np.random.default_rng(seed + 100).uniform(0.05, 1.0, 3)
-    # a cell is possible where one of the fine rotations in it is
+    # a cell is possible if one of the fine rotations in it is
     ends = np.concatenate([free, free[:, :1]], axis=1)
-    possible = np.stack([ends[:, k : k + coarse * parts : parts] for k in range(parts + 1)]).any(
-        axis=0
-    )
-    least = np.where(free[-1], 0.0, np.inf)
-    for before, after, there in zip(joints[-2::-1], joints[:0:-1], free[-2::-1]):
+    possible = np.stack(
+        [ends[:, k : k + coarse * subdivisions : subdivisions] for k in range(subdivisions + 1)]
+    ).any(axis=0)
+    minimum = np.where(free[-1], 0.0, np.inf)
+    for previous, current, is_allowed in zip(joints[-2::-1], joints[:0:-1], free[-2::-1]):
         cost = sum(
-            weight * np.angle(np.exp(1j * (after[None, :, axis] - before[:, None, axis]))) ** 2
+            weight * np.angle(np.exp(1j * (current[None, :, axis] - previous[:, None, axis]))) ** 2
             for axis, weight in enumerate(weights)
         )
-        least = np.where(there, (cost + least).min(axis=1), np.inf)
-    lattice = Lattice(joints[:, ::parts], possible, weights, np.ones(3, dtype=bool))
+        minimum = np.where(is_allowed, (cost + minimum).min(axis=1), np.inf)
+    lattice = Lattice(joints[:, ::subdivisions], possible, weights, np.ones(3, dtype=bool))
     counts = np.ones(points - 1)
-    value = least_ahead.ahead(lattice, np.zeros(coarse), counts, 2.0 * float(least.min()))
+    value = least_ahead.ahead(lattice, np.zeros(coarse), counts, 2.0 * float(minimum.min()))
     bound = least_ahead.least_of(value, lattice)
-    assert 0.9 * least.min() <= bound <= least.min() * (1.0 + 1e-9)
-    # from every rotation, too, but that beside where none leads on it may be off by little
-    from_each = least[::parts][free[0, ::parts]]
-    assert (value[free[0, ::parts]] <= from_each + 0.02 * least.min()).all()
+    assert 0.9 * minimum.min() <= bound <= minimum.min() * (1.0 + 1e-9)
+    # from every rotation too, except that the bound may be slightly off next to dead ends
+    from_each = minimum[::subdivisions][free[0, ::subdivisions]]
+    assert (value[free[0, ::subdivisions]] <= from_each + 0.02 * minimum.min()).all()
 
 
 def test_sums_that_leap_at_an_edge_hide_no_lower_ones():
-    """At the last rotation before others where nothing may be, sums are thirty times those beside it, and parabolas through
-    them fall below all others: the least is still none but that of a rotation, or next to it."""
+    """At the last rotation before a forbidden range sums are thirty times their neighbours, and
+    parabolas through them fall below all others: the minimum must still be that of a rotation, or
+    next to it."""
     looked_at = 0
     for seed in range(60):
         rng = np.random.default_rng(seed)
@@ -257,15 +268,15 @@ def test_sums_that_leap_at_an_edge_hide_no_lower_ones():
             rng.normal() * 4.0 / k * np.cos(k * phi + rng.uniform(0.0, 6.0)) for k in range(1, 6)
         )
         free = np.convolve(rng.random(190) < 0.06, np.ones(11), "valid") == 0
-        first = Lattice(
+        lattice = Lattice(
             joints, (free & np.roll(free, -1))[None], np.ones(3), np.ones(3, dtype=bool)
         )
-        there = first.passable[0]
-        edge = there & ~np.roll(there, -1)
-        value = np.where(there, np.exp(sum(waves)) * np.where(edge, 30.0, 1.0), np.inf)
+        is_passable = lattice.passable[0]
+        edge = is_passable & ~np.roll(is_passable, -1)
+        value = np.where(is_passable, np.exp(sum(waves)) * np.where(edge, 30.0, 1.0), np.inf)
         if edge.any():
             looked_at += 1
-            assert least_ahead.least_of(value, first) <= value.min()
+            assert least_ahead.least_of(value, lattice) <= value.min()
     assert looked_at > 50
 
 
@@ -276,20 +287,20 @@ def test_objectives_of_points_one_by_one(planned, objective):
     path = paths[0]
     points = gather([path.bead], task.cell)
     phi = np.linspace(-np.pi, np.pi, 361)
-    every = np.repeat(np.arange(len(points)), len(phi))
-    each = points.select_points(every)
+    point_indices = np.repeat(np.arange(len(points)), len(phi))
+    repeated = points.select_points(point_indices)
     turned = np.tile(phi, len(points))
-    joints = task.in_range(task.raw_joints(each, turned), each)
-    flange = each.frames.flange_poses(turned)
+    joints = task.in_range(task.raw_joints(repeated, turned), repeated)
+    flange = repeated.frames.flange_poses(turned)
     good = np.isfinite(joints).all(axis=1)
     value, ratio = np.full(len(joints), np.inf), np.zeros(len(joints))
-    rows = points.select_points(every[good])
+    rows = points.select_points(point_indices[good])
     value[good] = criteria.value(
         task, rows, joints[good], task.jacobian_at(rows.frames, turned[good], joints[good])
     )
     ratio[good] = task.condition_at(flange[good], joints[good])
-    kept = (task.given_rows.margin(joints) >= 0.0) & (ratio >= path.threshold[every])
-    least = np.where(kept, value, np.inf).reshape(len(points), -1).min(axis=1)
-    known = float(least.max() if objective == "limits-klein" else least.mean())
+    is_allowed = (task.given_rows.margin(joints) >= 0.0) & (ratio >= path.threshold[point_indices])
+    minima = np.where(is_allowed, value, np.inf).reshape(len(points), -1).min(axis=1)
+    expected = float(minima.max() if objective == "limits-klein" else minima.mean())
     (bound,) = certificate.certified(task, [dataclasses.replace(path, objective=np.inf)]).bound
-    assert 0.98 * known <= bound <= known * (1.0 + 1e-9)
+    assert 0.98 * expected <= bound <= expected * (1.0 + 1e-9)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points added to a bead lie on its curve, so that a part of revolution stays one."""
+"""Points added to a bead are on its curve, so that a part of revolution stays one."""
 
 import numpy as np
 import pytest
@@ -56,7 +56,8 @@ def test_corners_and_straight_stretches_stay_as_they_are():
 
 
 def test_added_points_are_on_the_sphere_and_in_the_plane_of_their_layer(sliced, cell_of):
-    """With axis 6 limited as by the maker, axes 1 to 5 move within a layer and points must be added."""
+    """With axis 6 limited as by the manufacturer, axes 1 to 5 move within a layer and points must
+    be added."""
     toolpath = sliced("sphere", 5.0)
     planned = plan_joints(toolpath, cell_of(toolpath, limits="maker"), JointParameters())
     assert planned.feasible
@@ -71,13 +72,17 @@ def test_added_points_are_on_the_sphere_and_in_the_plane_of_their_layer(sliced, 
 def test_beads_that_are_looked_at_together_get_the_points_that_they_get_alone(
     sliced, cell_of, monkeypatch
 ):
-    toolpath, found = sliced("sphere", 5.0), []
+    """The batch size does not change the added points."""
+    toolpath, joints_of_batches = sliced("sphere", 5.0), []
     for together in (1, 200, 4096):
         monkeypatch.setattr(chord_error, "POINTS_PER_BATCH", together)
         planned = plan_joints(toolpath, cell_of(toolpath, limits="maker"), JointParameters())
-        found.append([path.joints for path in planned.beads])
-    for other in found[1:]:
-        assert all(np.array_equal(one, again) for one, again in zip(found[0], other, strict=True))
+        joints_of_batches.append([path.joints for path in planned.beads])
+    for batch_joints in joints_of_batches[1:]:
+        assert all(
+            np.array_equal(first_joints, again)
+            for first_joints, again in zip(joints_of_batches[0], batch_joints, strict=True)
+        )
 
 
 def test_an_overlap_ends_on_the_sphere(sliced, cell_of):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Waiting for a temperature before a solid is returned to, from beads to programs read back; tampering is found."""
+"""Waiting for a temperature before returning to a solid, from beads to programs read back;
+tampering is detected."""
 
 import dataclasses
 import math
@@ -34,15 +35,15 @@ COOLING = CoolingParameters(below=150.0, input=3, gain=0.01, zero=0.25)
 LIFT = 20.0
 
 
-def toolpath(frame, order="around-axis", apart=0.9):
-    """Two blades side by side, three layers each, two rings in each layer."""
-    one = box(np.array([40.0, -11.0, 20.0]), np.array([76.0, 11.0, 44.0]))
+def toolpath(frame, order="around-axis", angle_between=0.9):
+    """Two neighbouring blades with three layers each and two rings per layer."""
+    blade = box(np.array([40.0, -11.0, 20.0]), np.array([76.0, 11.0, 44.0]))
     bodies = []
-    for number, turn in enumerate((0.0, apart)):
+    for number, turn in enumerate((0.0, angle_between)):
         cos, sin = math.cos(turn), math.sin(turn)
-        turned = one.vertices @ np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+        turned = blade.vertices @ np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
         bodies.append(
-            dataclasses.replace(one, name=f"blade {number}", vertices=turned @ frame[:3, :3].T)
+            dataclasses.replace(blade, name=f"blade {number}", vertices=turned @ frame[:3, :3].T)
         )
     strategy = DevelopableParameters(
         layer_height=5.0, chord_error=CHORD_ERROR, bead_spacing=6.0, order=order
@@ -54,19 +55,19 @@ def toolpath(frame, order="around-axis", apart=0.9):
 def planned(settings, frame, **changes):
     path = toolpath(frame, **changes)
     cell = cells.resolve(settings, np.eye(4), "developable")
-    found = plan_joints(path, cell, JointParameters(degree=1))
-    assert found.feasible, [issue.message for issue in found.issues]
-    return cell, path, found, assemble(found, cell, process())[0]
+    joint_path = plan_joints(path, cell, JointParameters(degree=1))
+    assert joint_path.feasible, [issue.message for issue in joint_path.issues]
+    return cell, path, joint_path, assemble(joint_path, cell, process())[0]
 
 
 def process(cooling=COOLING):
     return ProcessParameters(cooling=cooling, between_layers=BetweenLayersParameters(lift=LIFT))
 
 
-def program(cell, path, found, motion, post, cooling=COOLING, kind="joint", **more):
-    parameters = ProgramParameters(post=post, nc=NcParameters(), motion=kind, **more)
+def program(cell, path, joint_path, motion, post, cooling=COOLING, kind="joint", **options):
+    parameters = ProgramParameters(post=post, nc=NcParameters(), motion=kind, **options)
     return build(
-        motion, cell, process(cooling), parameters, "cool", (), returning(path, found.beads)
+        motion, cell, process(cooling), parameters, "cool", (), returning(path, joint_path.beads)
     )
 
 
@@ -77,10 +78,11 @@ def on_table():
 
 @pytest.mark.parametrize("order", ["around-axis", "feature"])
 def test_the_torch_waits_above_each_solid_once_a_layer(order):
-    cell, path, found, motion = planned(TABLE, np.eye(4), order=order)
-    made = program(cell, path, found, motion, "siemens")
-    waits = [block for block in made.blocks if isinstance(block, WaitBelow)]
-    beads = {(one.layer, one.index): one.bead for one in found.beads}
+    """The torch waits above each solid once per layer."""
+    cell, path, joint_path, motion = planned(TABLE, np.eye(4), order=order)
+    program_ = program(cell, path, joint_path, motion, "siemens")
+    waits = [block for block in program_.blocks if isinstance(block, WaitBelow)]
+    beads = {(bead_path.layer, bead_path.index): bead_path.bead for bead_path in joint_path.beads}
 
     def blade(bead):
         return int(math.atan2(*bead.points.mean(axis=0)[[1, 0]]) > 0.45)
@@ -88,17 +90,22 @@ def test_the_torch_waits_above_each_solid_once_a_layer(order):
     def level(bead):
         return round(float(np.hypot(*bead.points[0, :2]) - 60.0) / 5.0)
 
-    # the first bead of each layer of each blade, but of its first layer
+    # the first bead of each layer of each blade, except its first layer
     firsts = {}
-    for place, bead in beads.items():
-        firsts.setdefault((blade(bead), level(bead)), place)
-    wanted = [place for place in beads if place in firsts.values() and level(beads[place]) > 0]
-    assert [(wait.layer, wait.bead) for wait in waits] == wanted and len(wanted) >= 4
+    for bead_place, bead in beads.items():
+        firsts.setdefault((blade(bead), level(bead)), bead_place)
+    expected = [
+        bead_place
+        for bead_place in beads
+        if bead_place in firsts.values() and level(beads[bead_place]) > 0
+    ]
+    assert [(wait.layer, wait.bead) for wait in waits] == expected and len(expected) >= 4
     assert all((wait.number, wait.below) == (3, pytest.approx(1.75)) for wait in waits)
-    # right before it the torch stands above where the bead begins, right after it goes down there and deposits
-    for number, block in enumerate(made.blocks):
+    # right before the wait the torch is above the start of the bead, right after it approaches and
+    # deposits
+    for number, block in enumerate(program_.blocks):
         if isinstance(block, WaitBelow):
-            above, down = made.blocks[number - 1], made.blocks[number + 1]
+            above, down = program_.blocks[number - 1], program_.blocks[number + 1]
             assert isinstance(above, Moves) and isinstance(down, Moves) and len(down) == 1
             bead = beads[block.layer, block.bead]
             for moves, lift in ((above, LIFT), (down, 0.0)):
@@ -110,29 +117,37 @@ def test_the_torch_waits_above_each_solid_once_a_layer(order):
 @pytest.mark.parametrize(("post", "kind"), [("siemens", "joint"), ("siemens", "cartesian"), ("linuxcnc", "joint"),
                                             ("linuxcnc", "cartesian")])  # fmt: skip
 def test_programs_of_tables_read_the_sensor(on_table, post, kind):
-    cell, path, found, motion = on_table
+    """Programs of tables read the sensor, and tampering with the wait is detected."""
+    cell, path, joint_path, motion = on_table
     writer = catalogue.load(post)
-    made = program(cell, path, found, motion, post, kind=kind, max_points=60)
-    files = writer.write(made)
-    count = sum(isinstance(block, WaitBelow) for block in made.blocks)
+    program_ = program(cell, path, joint_path, motion, post, kind=kind, max_points=60)
+    files = writer.write(program_)
+    count = sum(isinstance(block, WaitBelow) for block in program_.blocks)
     assert count >= 4 and len(files) > 1
-    checked = verify(cell, motion, made, files, writer, CHORD_ERROR)
+    checked = verify(cell, motion, program_, files, writer, CHORD_ERROR)
     assert checked.issues == ()
-    told, lost = {"siemens": (b"WHILE $A_INA[3]>=1.75", b"WHILE $A_IN[3]==0"),
+    condition_text, error_check = {"siemens": (b"WHILE $A_INA[3]>=1.75", b"WHILE $A_IN[3]==0"),
                   "linuxcnc": (b"while [#5399 GE 1.75]", b"")}[post]  # fmt: skip
-    assert sum(text.count(told) for text in files.values()) == count
-    name = max(name for name, text in files.items() if told in text)
+    assert sum(text.count(condition_text) for text in files.values()) == count
+    name = max(name for name, text in files.items() if condition_text in text)
     changes = [
-        (told, told.replace(b"1.75", b"1.76")),
-        (told, told.replace(b"[3]", b"[2]") if lost else told + b"1"),
+        (condition_text, condition_text.replace(b"1.75", b"1.76")),
+        (
+            condition_text,
+            condition_text.replace(b"[3]", b"[2]") if error_check else condition_text + b"1",
+        ),
     ]
-    changes += [(told, lost)] if lost else [(b"M66 E2 L0\no<cool", b"M66 E1 L0\no<cool")]
+    changes += (
+        [(condition_text, error_check)]
+        if error_check
+        else [(b"M66 E2 L0\no<cool", b"M66 E1 L0\no<cool")]
+    )
     for old, new in changes:
         spoilt = {**files, name: files[name].replace(old, new, 1)}
         try:
             codes = [
                 issue.code
-                for issue in verify(cell, motion, made, spoilt, writer, CHORD_ERROR).issues
+                for issue in verify(cell, motion, program_, spoilt, writer, CHORD_ERROR).issues
             ]
         except InputError as error:
             codes = [error.code]
@@ -142,18 +157,19 @@ def test_programs_of_tables_read_the_sensor(on_table, post, kind):
             ["UNREADABLE_PROGRAM"],
         ), (old, new)
     without = program(
-        cell, path, found, motion, post, CoolingParameters(), kind=kind, max_points=60
+        cell, path, joint_path, motion, post, CoolingParameters(), kind=kind, max_points=60
     )
     assert not any(isinstance(block, WaitBelow) for block in without.blocks)
-    (told,) = verify(cell, motion, without, files, writer, CHORD_ERROR).issues
-    assert told.code == "VERIFY_COOLING" and f"{count} of" in told.message
+    (condition_text,) = verify(cell, motion, without, files, writer, CHORD_ERROR).issues
+    assert condition_text.code == "VERIFY_COOLING" and f"{count} of" in condition_text.message
 
 
 def test_loops_that_read_once_are_not_understood(on_table):
-    cell, path, found, motion = on_table
+    """Loops that read the sensor only once are rejected."""
+    cell, path, joint_path, motion = on_table
     writer = catalogue.load("linuxcnc")
     ((name, text),) = writer.write(
-        program(cell, path, found, motion, "linuxcnc", max_points=10**6)
+        program(cell, path, joint_path, motion, "linuxcnc", max_points=10**6)
     ).items()
     start = text.index(b"M66 E2 L0")
     loop = text[start : text.index(b"endwhile", start)]
@@ -170,29 +186,31 @@ def test_loops_that_read_once_are_not_understood(on_table):
 
 
 def test_robots_wait_or_say_why_not():
-    cell, path, found, motion = planned(ON_ROBOT, UP, apart=0.6)
+    """Robots wait for the temperature, or the post gives the reason why not."""
+    cell, path, joint_path, motion = planned(ON_ROBOT, UP, angle_between=0.6)
     writer = catalogue.load("fanuc")
-    whole = CoolingParameters(below=150.0, input=2, gain=8.0, zero=-3.0)
-    made = program(cell, path, found, motion, "fanuc", whole)
-    files = writer.write(made)
-    count = sum(isinstance(block, WaitBelow) for block in made.blocks)
+    cooling_in_units = CoolingParameters(below=150.0, input=2, gain=8.0, zero=-3.0)
+    program_ = program(cell, path, joint_path, motion, "fanuc", cooling_in_units)
+    files = writer.write(program_)
+    count = sum(isinstance(block, WaitBelow) for block in program_.blocks)
     assert sum(text.count(b"WAIT AI[2]<1197 ") for text in files.values()) == count >= 4
-    assert verify(cell, motion, made, files, writer, CHORD_ERROR).issues == ()
+    assert verify(cell, motion, program_, files, writer, CHORD_ERROR).issues == ()
     name = next(name for name in files if b"WAIT AI[2]" in files[name])
     for new in (b"WAIT AI[3]<1197", b"WAIT AI[2]<1198", b"WAIT DI[2]=ON"):
         spoilt = {**files, name: files[name].replace(b"WAIT AI[2]<1197", new, 1)}
         codes = {
-            issue.code for issue in verify(cell, motion, made, spoilt, writer, CHORD_ERROR).issues
+            issue.code
+            for issue in verify(cell, motion, program_, spoilt, writer, CHORD_ERROR).issues
         }
         assert codes == {"VERIFY_COOLING", *(["VERIFY_WAIT"] if b"DI[" in new else [])}
     for post, cooling, code in (
         ("fanuc", COOLING, "ANALOGUE_INPUT"),
         ("fanuc", CoolingParameters(below=150.0, input=26), "ANALOGUE_INPUT"),
-        ("staubli", whole, "NO_ANALOGUE_INPUT"),
+        ("staubli", cooling_in_units, "NO_ANALOGUE_INPUT"),
     ):
-        other = dataclasses.replace(
-            program(cell, path, found, motion, "fanuc", cooling), continuous=(False,) * 6
+        for_post = dataclasses.replace(
+            program(cell, path, joint_path, motion, "fanuc", cooling), continuous=(False,) * 6
         )
         with pytest.raises(InputError) as raised:
-            catalogue.load(post).write(other)
+            catalogue.load(post).write(for_post)
         assert raised.value.code == code

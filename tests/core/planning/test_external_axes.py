@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A robot with the torch and a positioner with the part: driven in the world by two PyKDL chains that are built here of the
-files' numbers, robot and positioner each on its own."""
+"""A robot with the torch and a positioner with the part: driven in the world by two PyKDL chains
+built here from the files, one for the robot and one for the positioner."""
 
 import dataclasses
 import json
@@ -28,7 +28,7 @@ TORCH, PLATFORM = (20.0, 0.0, 300.0, 0.0, 35.0, 0.0), 5.0
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def cell_for(toolpath, positioner=POSITIONER, stands=STANDS, **more):
+def cell_for(toolpath, positioner=POSITIONER, stands=STANDS, **options):
     return cells.resolve(
         CellParameters(
             **{
@@ -38,7 +38,7 @@ def cell_for(toolpath, positioner=POSITIONER, stands=STANDS, **more):
                 "platform": PLATFORM,
                 "external": f"{positioner} at {' '.join(map(str, stands))} carries part",
                 "nozzle": NozzleParameters(tool=(*TORCH[:3], *np.radians(TORCH[3:]))),
-                **more,
+                **options,
             }
         ),
         toolpath.frame,
@@ -50,21 +50,23 @@ def kdl_pose(xyz, rpy_deg=(0.0, 0.0, 0.0)):
 
 
 def kdl_chain(path):
-    """The joints of a machine file, floor plate to flange."""
-    told = json.loads(Path(path).read_text(encoding="utf-8"))
+    """The joints of a machine file from base plate to flange."""
+    description = json.loads(Path(path).read_text(encoding="utf-8"))
     chain = PyKDL.Chain()
-    for joint in told["joints"]:
+    for joint in description["joints"]:
         chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_pose(joint["origin"], joint["rpy"])))
         axis = PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), PyKDL.Joint.RotAxis)
         chain.addSegment(PyKDL.Segment(axis, PyKDL.Frame()))
     chain.addSegment(
-        PyKDL.Segment(PyKDL.Joint(), kdl_pose(told["flange"]["origin"], told["flange"]["rpy"]))
+        PyKDL.Segment(
+            PyKDL.Joint(), kdl_pose(description["flange"]["origin"], description["flange"]["rpy"])
+        )
     )
-    base = told.get("base", {"origin": (0, 0, 0), "rpy": (0, 0, 0)})
+    base = description.get("base", {"origin": (0, 0, 0), "rpy": (0, 0, 0)})
     return chain, kdl_pose(base["origin"], base["rpy"]).Inverse()
 
 
-def driven(chain, values):
+def drive_chain(chain, values):
     angles = PyKDL.JntArray(len(values))
     for index, value in enumerate(values):
         angles[index] = value
@@ -74,24 +76,29 @@ def driven(chain, values):
 
 
 def bryant(six):
-    """Rx Ry Rz, as the interface says."""
+    """Rx Ry Rz, as the interface defines."""
     x, y, z = np.radians(six[3:])
     turned = PyKDL.Rotation.RotX(x) * PyKDL.Rotation.RotY(y) * PyKDL.Rotation.RotZ(z)
     return PyKDL.Frame(turned, PyKDL.Vector(*six[:3]))
 
 
 def in_the_world(joints, positioner_file, stands=STANDS):
-    """Nozzle's tip and tool axis in the part's frame (mounted upright on the platform), and the tool axis in the world, of
-    joint values (n, 8): by way of the world."""
+    """For joint values (n, 8), computed through the world: tip and tool axis in the part's frame
+    (mounted upright on the platform), and the tool axis in the world."""
     robot, robot_base = kdl_chain(machines.file_of(ROBOT))
     table, table_base = kdl_chain(positioner_file)
     tips, tools, upward = [], [], []
     for row in joints:
-        tip = robot_base * driven(robot, row[:6]) * bryant(TORCH)
-        part = bryant(stands) * table_base * driven(table, row[6:]) * kdl_pose((0.0, 0.0, PLATFORM))
-        seen = part.Inverse() * tip
-        tips.append(list(seen.p))
-        tools.append([-component for component in seen.M.UnitZ()])
+        tip = robot_base * drive_chain(robot, row[:6]) * bryant(TORCH)
+        part_frame = (
+            bryant(stands)
+            * table_base
+            * drive_chain(table, row[6:])
+            * kdl_pose((0.0, 0.0, PLATFORM))
+        )
+        tip_in_part = part_frame.Inverse() * tip
+        tips.append(list(tip_in_part.p))
+        tools.append([-component for component in tip_in_part.M.UnitZ()])
         upward.append([-component for component in tip.M.UnitZ()])
     return np.array(tips), np.array(tools), np.array(upward)
 
@@ -129,11 +136,12 @@ def test_every_point_is_met_and_the_tool_is_upright(hemisphere, planned):
     assert np.abs(tip - points).max() < 1e-6
     assert np.abs(tool - axes).max() < 1e-9
     assert np.degrees(np.arccos(np.clip(upward @ UP, -1.0, 1.0))).max() < 10.0 + 1e-6
-    # the tool leans by more than that in the part: it is the positioner that turns
+    # the tool leans more than that in the part, so the positioner rotates
     assert np.degrees(np.arccos(axes @ frame[:3, 2])).max() > 40.0
 
 
 def test_between_the_points_too(hemisphere, planned):
+    """Between the points the tip stays within the chord error."""
     for path in planned.beads[::3]:
         start, end = path.joints[:-1], path.joints[1:]
         for share in (0.2, 0.5, 0.9):
@@ -141,9 +149,9 @@ def test_between_the_points_too(hemisphere, planned):
             tip = tip @ hemisphere.frame[:3, :3].T + hemisphere.frame[:3, 3]
             along = np.diff(path.bead.points, axis=0)
             gap = tip - path.bead.points[:-1]
-            part = np.clip((gap * along).sum(1) / (along * along).sum(1), 0.0, 1.0)
+            share_of_segment = np.clip((gap * along).sum(1) / (along * along).sum(1), 0.0, 1.0)
             assert (
-                np.linalg.norm(gap - part[:, None] * along, axis=1).max()
+                np.linalg.norm(gap - share_of_segment[:, None] * along, axis=1).max()
                 <= hemisphere.chord_error + 1e-6
             )
             assert np.degrees(np.arccos(np.clip(upward @ UP, -1.0, 1.0))).max() < 10.5
@@ -172,7 +180,8 @@ def test_nothing_turns_that_need_not(sliced):
 
 
 def test_a_turntable_turns_no_less(planned):
-    """Going once round a part of revolution takes a whole turn of the table, whatever else moves."""
+    """One turn around a part of revolution takes a whole turn of the table, whatever the other axes
+    do."""
     turned = sum(np.abs(np.diff(path.joints[:, 7])).sum() for path in planned.beads)
     tilted = sum(np.abs(np.diff(path.joints[:, 6])).sum() for path in planned.beads)
     assert turned <= 2.0 * math.pi * len(planned.beads) + 1e-6
@@ -207,18 +216,18 @@ SKEW = {
 
 @pytest.fixture(scope="module")
 def skew(tmp_path_factory):
-    """A positioner whose axes neither meet nor are square."""
+    """A positioner whose axes neither intersect nor are perpendicular."""
     path = tmp_path_factory.mktemp("cell") / "skew.json"
     path.write_text(json.dumps(SKEW), encoding="utf-8")
     chain, base = kdl_chain(path)
     poses = []
     for values in ((0.0, 0.0), (40.0, -70.0), (-90.0, 300.0)):
-        at = base.Inverse() * driven(chain, np.radians(values))
+        flange = base.Inverse() * drive_chain(chain, np.radians(values))
         poses.append(
             {
                 "q": values,
-                "origin": list(at.p),
-                "rotation": [[at.M[row, column] for column in range(3)] for row in range(3)],
+                "origin": list(flange.p),
+                "rotation": [[flange.M[row, column] for column in range(3)] for row in range(3)],
             }
         )
     path.write_text(json.dumps({**SKEW, "check_poses": poses}), encoding="utf-8")
@@ -234,10 +243,10 @@ def test_axes_that_neither_meet_nor_are_square(hemisphere, skew):
 
 
 def test_what_cannot_be_brought_upright_is_told(hemisphere, skew, tmp_path):
-    told = json.loads(Path(skew).read_text(encoding="utf-8"))
-    told["limits"]["maker"]["axes"] = [[-20, 20], [-400, 400]]
+    description = json.loads(Path(skew).read_text(encoding="utf-8"))
+    description["limits"]["maker"]["axes"] = [[-20, 20], [-400, 400]]
     path = tmp_path / "short.json"
-    path.write_text(json.dumps(told), encoding="utf-8")
+    path.write_text(json.dumps(description), encoding="utf-8")
     planned = plan_joints(
         hemisphere, cell_for(hemisphere, positioner=path), JointParameters(method="constant")
     )
@@ -247,8 +256,8 @@ def test_what_cannot_be_brought_upright_is_told(hemisphere, skew, tmp_path):
 
 @pytest.mark.parametrize(("setup", "holds"), [("tool-on-robot", False), ("part-on-robot", True)])
 def test_what_leans_is_told_where_nothing_turns_the_part(hemisphere, setup, holds):
-    """With the tool on the robot its axis leans as the wall does, on a slanted platform by as much less or more; a part on
-    the robot is always brought under the torch as it stands."""
+    """With the tool on the robot its axis leans like the wall, plus or minus the platform's slant;
+    a part on the robot is always brought under the torch."""
     stands = (1300.0, 0.0, 300.0, 0.0, *np.radians([25.0, 0.0]))
     cell = cells.resolve(
         CellParameters(
@@ -262,7 +271,9 @@ def test_what_leans_is_told_where_nothing_turns_the_part(hemisphere, setup, hold
         hemisphere.frame,
     )
     planned = plan_joints(levelled_to(hemisphere, 40.0), cell, JointParameters(method="constant"))
-    told = {(one.layer, one.bead): one for one in planned.issues if one.code == "NOT_LEVEL"}
+    not_level = {
+        (issue.layer, issue.bead): issue for issue in planned.issues if issue.code == "NOT_LEVEL"
+    }
     slant = np.array(
         math.sin(math.radians(25.0)) * np.array([1.0, 0.0, 0.0]) + math.cos(math.radians(25.0)) * UP
     )
@@ -276,14 +287,14 @@ def test_what_leans_is_told_where_nothing_turns_the_part(hemisphere, setup, hold
         )
         axes = slant[None] if holds else bead.tool @ hemisphere.frame[:3, :3] @ turned.T
         leans = math.degrees(math.acos(float(np.clip((axes @ UP).min(), -1.0, 1.0))))
-        assert ((layer, number) in told) == (leans > 40.0)
+        assert ((layer, number) in not_level) == (leans > 40.0)
         if leans > 40.0:
-            assert f"would be {leans:.3g} deg from the vertical" in told[layer, number].message
+            assert f"would be {leans:.3g} deg from the vertical" in not_level[layer, number].message
             assert (
                 "no axis turns the part; put the part on a positioner"
-                in told[layer, number].message
+                in not_level[layer, number].message
             )
-    assert bool(told) != holds
+    assert bool(not_level) != holds
 
 
 @pytest.mark.parametrize(
@@ -304,15 +315,15 @@ def test_refused_with_a_reason(hemisphere, changed, code):
 
 
 def test_two_mechanisms_of_one_name(hemisphere, skew, tmp_path):
-    told = json.loads(Path(skew).read_text(encoding="utf-8"))
+    description = json.loads(Path(skew).read_text(encoding="utf-8"))
     one_axis = {
-        **told,
-        "joints": told["joints"][:1],
+        **description,
+        "joints": description["joints"][:1],
         "limits": {"maker": {"axes": [[-90, 90]], "source": "made up"}},
         "controller": {"matrix": [[1]], "offset": [0], "remark": "as it is"},
     }
     chain = PyKDL.Chain()
-    joint = told["joints"][0]
+    joint = description["joints"][0]
     chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_pose(joint["origin"], joint["rpy"])))
     chain.addSegment(
         PyKDL.Segment(
@@ -321,32 +332,34 @@ def test_two_mechanisms_of_one_name(hemisphere, skew, tmp_path):
         )
     )
     chain.addSegment(
-        PyKDL.Segment(PyKDL.Joint(), kdl_pose(told["flange"]["origin"], told["flange"]["rpy"]))
+        PyKDL.Segment(
+            PyKDL.Joint(), kdl_pose(description["flange"]["origin"], description["flange"]["rpy"])
+        )
     )
     one_axis["check_poses"] = [
         {
             "q": [degrees],
-            "origin": list(at.p),
-            "rotation": [[at.M[i, k] for k in range(3)] for i in range(3)],
+            "origin": list(pose_at.p),
+            "rotation": [[pose_at.M[i, k] for k in range(3)] for i in range(3)],
         }
         for degrees in (0.0, 30.0, -80.0)
-        for at in [driven(chain, [math.radians(degrees)])]
+        for pose_at in [drive_chain(chain, [math.radians(degrees)])]
     ]
-    other = tmp_path / "other.json"
-    other.write_text(json.dumps(one_axis), encoding="utf-8")
-    at = " ".join(map(str, STANDS))
+    one_axis_file = tmp_path / "other.json"
+    one_axis_file.write_text(json.dumps(one_axis), encoding="utf-8")
+    pose_at = " ".join(map(str, STANDS))
     with pytest.raises(InputError, match="share the name 'skew'; change the id of one file"):
         cell_for(
             hemisphere,
-            external=f"{other} at {at} carries part; {skew} at 1400 0 300 0 0 0 carries part",
+            external=f"{one_axis_file} at {pose_at} carries part; {skew} at 1400 0 300 0 0 0 carries part",
         )
-    twice = f"{other} at {at} carries part"
+    twice = f"{one_axis_file} at {pose_at} carries part"
     with pytest.raises(InputError, match="'skew' is listed twice"):
         cell_for(hemisphere, external=f"{twice}; {twice}")
-    # two of a kind, one on the other, are no mistake
+    # the same machine twice, one on the other, is allowed
     assert (
         cell_for(
-            hemisphere, external=f"{twice}; {other} at 1400 0 400 0 0 90 carries part"
+            hemisphere, external=f"{twice}; {one_axis_file} at 1400 0 400 0 0 90 carries part"
         ).machine.chain.axes
         == 8
     )
@@ -373,5 +386,9 @@ def test_text_and_back():
         ExternalMechanism("track", (0.0,) * 6, "robot"),
     )
     again = EXTERNAL.read("; ".join(map(str, named)))
-    assert [one.machine for one in again] == ["d500", "track"] and again[1].carries == "robot"
-    assert np.allclose([one.pose for one in again], [one.pose for one in named], atol=1e-9)
+    assert [mechanism.machine for mechanism in again] == ["d500", "track"] and again[
+        1
+    ].carries == "robot"
+    assert np.allclose(
+        [mechanism.pose for mechanism in again], [mechanism.pose for mechanism in named], atol=1e-9
+    )

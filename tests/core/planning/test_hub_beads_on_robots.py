@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads on a cone, closed and open, carried out by a robot that holds the part or the torch, down to the program."""
+"""Beads on a cone, closed and open, executed by a robot that holds the part or the torch, up to the
+program."""
 
 import math
 
@@ -36,7 +37,7 @@ CELLS = {
 
 
 def bead(surface, flat, closed):
-    """A bead of plane points (n, 2) laid on the surface, along its normals."""
+    """A bead of plane points (n, 2) wrapped onto the surface, along its normals."""
     points = surface.wrap(flat)
     if closed:
         points[-1] = points[0]
@@ -48,8 +49,8 @@ def bead(surface, flat, closed):
 
 
 def blade(layers=2, half=12.0, width=5.0):
-    """Two rings, one inside the other, and a bead along the middle, in each layer, at the side where X is."""
-    made = []
+    """Two nested rings and a bead along the middle in each layer, on the X side."""
+    blade_layers = []
     for k in range(layers):
         surface = CONE.offset(2.5 * k)
         rho = surface.radius * (1.0 - 40.0 / surface.height)
@@ -60,8 +61,8 @@ def blade(layers=2, half=12.0, width=5.0):
         beads = [
             bead(surface, middle + (half - share * width) * ring, True) for share in (0.0, 1.0)
         ]
-        made.append(Layer((*beads, bead(surface, middle + across, False))))
-    return Toolpath(tuple(made), np.eye(4), 2.5, CHORD_ERROR, family="developable")
+        blade_layers.append(Layer((*beads, bead(surface, middle + across, False))))
+    return Toolpath(tuple(blade_layers), np.eye(4), 2.5, CHORD_ERROR, family="developable")
 
 
 @pytest.fixture(scope="module", params=list(CELLS))
@@ -71,20 +72,21 @@ def planned(request):
     assert path.feasible, [issue.message for issue in path.issues]
     motion, issues = assemble(path, cell, ProcessParameters(travel_speed=8.0))
     assert not [issue for issue in issues if issue.level == "error"], issues
-    return cell, motion, [one.bead for one in path.beads]
+    return cell, motion, [bead_path.bead for bead_path in path.beads]
 
 
 def test_the_torch_is_where_the_beads_are(planned):
+    """The torch follows the beads."""
     cell, motion, beads = planned
     tip, tool = cell.tip_in_part(cell.machine.chain.forward(motion.joints[motion.deposit]))
-    np.testing.assert_allclose(tip, np.concatenate([one.points for one in beads]), atol=1e-6)
-    np.testing.assert_allclose(tool, np.concatenate([one.tool for one in beads]), atol=1e-9)
-    # along the cone's normals, wherever planning put further points in
+    np.testing.assert_allclose(tip, np.concatenate([bead.points for bead in beads]), atol=1e-6)
+    np.testing.assert_allclose(tool, np.concatenate([bead.tool for bead in beads]), atol=1e-9)
+    # along the cone's normals, also at points added by planning
     surface = [CONE.offset(2.5 * (k // 3)) for k in range(len(beads))]
-    for one, cone in zip(beads, surface):
+    for bead, cone in zip(beads, surface):
         assert (
             np.degrees(
-                np.arccos(np.clip((one.tool * cone.normals(one.points)).sum(axis=1), -1, 1))
+                np.arccos(np.clip((bead.tool * cone.normals(bead.points)).sum(axis=1), -1, 1))
             ).max()
             < 0.3
         )
@@ -98,7 +100,7 @@ def read_back(cell, motion, kind):
 
 def test_programs_are_read_back_to_the_plan(planned):
     cell, motion, _ = planned
-    # FANUC takes no positions with a fixed torch
+    # FANUC accepts no positions with a fixed torch
     for kind in ("joint",) if cell.setup == "part-on-robot" else ("joint", "cartesian"):
         result = read_back(cell, motion, kind)
         assert (

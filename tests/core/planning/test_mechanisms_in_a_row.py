@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One table alone, and one that stands on another: driven in the world by PyKDL chains built here of the numbers."""
+"""One table, and one mounted on another: driven in the world by PyKDL chains built from their
+numbers."""
 
 import dataclasses
 import json
@@ -22,7 +23,7 @@ from tests.core.planning.test_external_axes import (
     TORCH,
     UP,
     bryant,
-    driven,
+    drive_chain,
     kdl_chain,
     kdl_pose,
 )
@@ -38,7 +39,7 @@ ON_TILT = (
     2.0,
     0.0,
     50.0,
-)  # of the turning one in the world, with the tilting one at zero
+)  # of the turntable in the world, with the tilting table at zero
 TABLES = {
     "turn": {
         "origin": [5, 0, 60],
@@ -59,16 +60,16 @@ TABLES = {
 
 @pytest.fixture(scope="module")
 def tables(tmp_path_factory):
-    """Machine files of a table that turns and of one that tilts."""
-    folder, found = tmp_path_factory.mktemp("tables"), {}
+    """Machine files of a turntable and a tilting table."""
+    folder, files = tmp_path_factory.mktemp("tables"), {}
     for name, table in TABLES.items():
-        path = found[name] = folder / f"{name}.json"
+        path = files[name] = folder / f"{name}.json"
         joint = {
             "name": name,
             **{key: table[key] for key in ("origin", "rpy", "axis")},
             "max_speed": 120,
         }
-        told = {
+        description = {
             "id": name,
             "title": name,
             "sources": ["made up"],
@@ -78,19 +79,19 @@ def tables(tmp_path_factory):
             "limits": {"maker": {"axes": [table["limits"]], "source": "made up"}},
             "check_poses": [],
         }
-        path.write_text(json.dumps(told), encoding="utf-8")
+        path.write_text(json.dumps(description), encoding="utf-8")
         chain, _ = kdl_chain(path)
-        told["check_poses"] = [
+        description["check_poses"] = [
             {
                 "q": [degrees],
-                "origin": list(at.p),
-                "rotation": [[at.M[i, k] for k in range(3)] for i in range(3)],
+                "origin": list(flange.p),
+                "rotation": [[flange.M[i, k] for k in range(3)] for i in range(3)],
             }
             for degrees in (0.0, 35.0, -80.0)
-            for at in [driven(chain, [math.radians(degrees)])]
+            for flange in [drive_chain(chain, [math.radians(degrees)])]
         ]
-        path.write_text(json.dumps(told), encoding="utf-8")
-    return found
+        path.write_text(json.dumps(description), encoding="utf-8")
+    return files
 
 
 def cell_for(toolpath, external):
@@ -112,20 +113,26 @@ def named(path, stands):
 
 
 def in_the_world(toolpath, joints, stand):
-    """Tip and tool axis in part coordinates, and the tool axis in the world, of joints (n, axes); `stand` gives where the
-    plate that carries the part is for the external ones."""
+    """Tip and tool axis in part coordinates, and the tool axis in the world, for joints (n, axes);
+    `stand` gives the pose of the plate that carries the part for the external values."""
     robot, robot_base = kdl_chain(machines.file_of(ROBOT))
-    found = []
+    poses = []
     for row in joints:
-        tip = robot_base * driven(robot, row[:6]) * bryant(TORCH)
-        seen = (stand(row[6:]) * kdl_pose((0.0, 0.0, PLATFORM))).Inverse() * tip
-        found.append([list(seen.p), [-x for x in seen.M.UnitZ()], [-x for x in tip.M.UnitZ()]])
-    tip, tool, upward = np.array(found).transpose(1, 0, 2)
+        tip = robot_base * drive_chain(robot, row[:6]) * bryant(TORCH)
+        tip_in_plate = (stand(row[6:]) * kdl_pose((0.0, 0.0, PLATFORM))).Inverse() * tip
+        poses.append(
+            [
+                list(tip_in_plate.p),
+                [-x for x in tip_in_plate.M.UnitZ()],
+                [-x for x in tip.M.UnitZ()],
+            ]
+        )
+    tip, tool, upward = np.array(poses).transpose(1, 0, 2)
     turn, origin = toolpath.frame[:3, :3], toolpath.frame[:3, 3]
     return tip @ turn.T + origin, tool @ turn.T, upward
 
 
-def on_its_points(toolpath, planned, stand):
+def check_tips(toolpath, planned, stand):
     assert planned.feasible, [issue.message for issue in planned.issues]
     tip, tool, upward = in_the_world(toolpath, planned.joints, stand)
     assert np.abs(tip - np.concatenate([path.bead.points for path in planned.beads])).max() < 1e-6
@@ -139,28 +146,29 @@ def hemisphere(sliced):
 
 
 def test_a_turntable_alone_turns_what_the_robot_need_not(hemisphere, tables):
+    """A turntable reduces the motion of the robot."""
     cell = cell_for(hemisphere, named(tables["turn"], STANDS["turn"]))
     chain, base = kdl_chain(tables["turn"])
-    stand = lambda values: bryant(STANDS["turn"]) * base * driven(chain, values)  # noqa: E731
-    turned, held = (
+    stand = lambda values: bryant(STANDS["turn"]) * base * drive_chain(chain, values)  # noqa: E731
+    optimised_path, level_path = (
         plan_joints(hemisphere, cell, JointParameters(external_axes=rule))
         for rule in ("optimised", "level")
     )
-    for planned in (turned, held):
-        on_its_points(hemisphere, planned, stand)
+    for planned in (optimised_path, level_path):
+        check_tips(hemisphere, planned, stand)
         lower, upper = np.radians(TABLES["turn"]["limits"])
         assert (planned.joints[:, 6] >= lower).all() and (planned.joints[:, 6] <= upper).all()
     still, moved = (
-        held.joints[:, 6],
-        np.concatenate([np.diff(path.joints[:, 6]) for path in turned.beads]),
+        level_path.joints[:, 6],
+        np.concatenate([np.diff(path.joints[:, 6]) for path in optimised_path.beads]),
     )
     assert (still == still[0]).all()
     assert np.abs(moved).sum() > math.pi
 
-    def most(planned):
+    def largest_range(planned):
         return max(np.ptp(path.joints[:, :6], axis=0).max() for path in planned.beads)
 
-    assert most(turned) < most(held)
+    assert largest_range(optimised_path) < largest_range(level_path)
 
 
 def test_a_table_on_another_one_keeps_the_tool_upright(hemisphere, tables):
@@ -173,7 +181,7 @@ def test_a_table_on_another_one_keeps_the_tool_upright(hemisphere, tables):
     (tilt, tilt_base), (turn, turn_base) = kdl_chain(tables["tilt"]), kdl_chain(tables["turn"])
 
     def plate(value):
-        return bryant(STANDS["tilt"]) * tilt_base * driven(tilt, [value])
+        return bryant(STANDS["tilt"]) * tilt_base * drive_chain(tilt, [value])
 
     def stand(values):
         return (
@@ -181,11 +189,11 @@ def test_a_table_on_another_one_keeps_the_tool_upright(hemisphere, tables):
             * plate(0.0).Inverse()
             * bryant(ON_TILT)
             * turn_base
-            * driven(turn, values[1:])
+            * drive_chain(turn, values[1:])
         )
 
     planned = plan_joints(levelled, cell, JointParameters())
-    assert on_its_points(levelled, planned, stand).max() < 10.0 + 1e-6
+    assert check_tips(levelled, planned, stand).max() < 10.0 + 1e-6
     assert (
         np.ptp(planned.joints[:, 6]) > math.radians(5.0) and np.ptp(planned.joints[:, 7]) > math.pi
     )

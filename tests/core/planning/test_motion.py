@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Motion and program: rows, times, rapids, overlap, resuming; what comes out survives the read-back."""
+"""Motion and program: rows, times, rapids, overlap, resuming; the result is read back."""
 
 import dataclasses
 
@@ -73,6 +73,7 @@ def test_every_row_is_where_its_joints_put_the_nozzle(planned):
 
 
 def test_rapids_withdraw_along_the_tool_axis_and_keep_the_axes_within_their_speed(planned):
+    """Rapids retract along the tool axis and keep the axes within their speeds."""
     process = ProcessParameters(between_layers=BetweenLayersParameters(lift=12.5), rapid_speed=80.0)
     _, cell, joint_path, motion = planned(process)
     moved = np.linalg.norm(np.diff(motion.position, axis=0), axis=1)
@@ -81,8 +82,8 @@ def test_rapids_withdraw_along_the_tool_axis_and_keep_the_axes_within_their_spee
     assert (moved[rapid] / motion.duration[1:][rapid] <= 80.0 + 1e-9).all()
     assert (turned[rapid].max(axis=1) <= motion.duration[1:][rapid]).all()
     for path in joint_path.beads[1:]:
-        first = np.flatnonzero((motion.layer == path.layer) & ~motion.deposit)[:3]
-        above = motion.position[first[1]] - path.bead.points[0]
+        rapid_rows = np.flatnonzero((motion.layer == path.layer) & ~motion.deposit)[:3]
+        above = motion.position[rapid_rows[1]] - path.bead.points[0]
         assert np.abs(above - 12.5 * path.bead.tool[0]).max() < 1e-6
 
 
@@ -103,21 +104,22 @@ def test_overlap_runs_on_over_the_beginning_and_survives_the_read_back(planned, 
 
 
 def test_a_rapid_through_the_part_is_refused(planned):
-    """The same rapids with the deposit moved up in front of the nozzle: every travel of the upper layers meets it."""
+    """The same rapids with the deposit raised in front of the nozzle: every travel of the upper
+    layers touches it."""
     _, cell, path, motion = planned()
-    beads = [one.bead for one in path.beads]
+    beads = [bead_path.bead for bead_path in path.beads]
 
-    def met(up):
+    def check_rapids(up):
         moved = [dataclasses.replace(bead, points=bead.points + [0.0, 0.0, up]) for bead in beads]
         return rapid_contacts.looked_at(motion, moved, cell, (), 8.0, 1.0, 20_000)
 
     assert (
-        not len(met(0.0).rows)
-        and met(0.0).place is None
-        and met(0.0).moves == (~motion.deposit[1:]).sum()
+        not len(check_rapids(0.0).rows)
+        and check_rapids(0.0).place is None
+        and check_rapids(0.0).moves == (~motion.deposit[1:]).sum()
     )
-    assert not len(met(-500.0).rows)
-    raised = met(25.0)
+    assert not len(check_rapids(-500.0).rows)
+    raised = check_rapids(25.0)
     assert (
         raised.place is not None and not motion.deposit[raised.rows].any() and len(raised.rows) > 5
     )
@@ -135,17 +137,18 @@ def test_a_rapid_through_the_part_is_refused(planned):
     ],
 )
 def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, met):
-    """Tips over, under and beside the platform, upright and laid over: 60 mm of nozzle, opening by 20 deg."""
+    """Tips above, below and next to the platform, upright and tilted: a nozzle of 60 mm with a half
+    angle of 20 deg."""
     _, cell, path, motion = planned()
-    some = motion.deposit
-    flat = np.zeros(int(some.sum()))
+    is_deposit = motion.deposit
+    flat = np.zeros(int(is_deposit.sum()))
     deposit = Beads(
-        motion.position[some],
-        motion.build[some],
-        motion.tool[some],
+        motion.position[is_deposit],
+        motion.build[is_deposit],
+        motion.tool[is_deposit],
         flat,
         flat,
-        motion.point[some] == 0,
+        motion.point[is_deposit] == 0,
     )
     surroundings = RapidObstacles(cell, deposit, ())
     poses = cell.machine.opw.inverse(
@@ -155,26 +158,29 @@ def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, me
     moves = Driven(joints, joints, np.zeros(1, dtype=int))
     assert surroundings.find_collisions(moves)[0] == met
     assert surroundings.names(moves) == ["the platform"] * met
-    lost = Driven(
+    with_unreachable = Driven(
         np.r_[joints, np.nan * joints], np.r_[joints, joints], np.zeros(2, dtype=int)
-    )  # one cannot be reached
-    assert surroundings.names(lost) == ["the platform"] * met
-    assert surroundings.names(lost.of(np.array([1]))) == []
-    # what looks at rapids alone finds it too, by a row of its own, and by a platform alone
-    row, led = 1, motion.joints.copy()  # before there is a bead
+    )  # the first cannot be reached
+    assert surroundings.names(with_unreachable) == ["the platform"] * met
+    assert surroundings.names(with_unreachable.of(np.array([1]))) == []
+    # the check of rapids finds it too, in its own row, and only if there is a platform
+    row, led = 1, motion.joints.copy()  # before any bead
     assert not motion.deposit[:2].any()
     led[: row + 1] = joints[0]
-    there = dataclasses.replace(motion, joints=led)
-    for one, expected in ((cell, met), (dataclasses.replace(cell, platform_diameter=0.0), False)):
-        looked = rapid_contacts.looked_at(
-            there, [bead.bead for bead in path.beads], one, (), 0.0, 0.0, 20_000
+    raised_motion = dataclasses.replace(motion, joints=led)
+    for checked_cell, expected in (
+        (cell, met),
+        (dataclasses.replace(cell, platform_diameter=0.0), False),
+    ):
+        contacts = rapid_contacts.looked_at(
+            raised_motion, [bead.bead for bead in path.beads], checked_cell, (), 0.0, 0.0, 20_000
         )
-        assert (row in looked.rows) == expected
+        assert (row in contacts.rows) == expected
 
 
 def test_rapids_are_raised_until_the_nozzle_is_clear(sliced, cell_of):
-    """Seams moved for a limited axis send the nozzle across the part, and beads lean on its limits: brute force finds every
-    rapid clear at every degree, and every row within limits."""
+    """Seams moved for a limited axis send the nozzle across the part, and beads reach its limits:
+    brute force finds every rapid clear at every degree, and every row within limits."""
     toolpath = sliced("sphere", 5.0)
     cell = cell_of(toolpath, limits="maker")
     joint_path = plan_joints(toolpath, cell, JointParameters())
@@ -213,15 +219,16 @@ def test_what_happens_between_layers(planned):
 
 
 def test_resuming_runs_the_same_motion_from_there(planned):
+    """A resumed program has the same motion from its start layer on."""
     process = ProcessParameters()
     toolpath, cell, _, motion = planned(process)
-    whole = build(motion, cell, process, ProgramParameters(), "job")
+    full_program = build(motion, cell, process, ProgramParameters(), "job")
     later = build(
         motion, cell, process, ProgramParameters(start_at=StartParameters(layer=2)), "job"
     )
     starts = [block.layer for block in later.blocks if isinstance(block, LayerStart)]
     assert starts == list(range(2, len(toolpath.layers)))
-    deposit = [m for m in whole.moves if m.kind == "deposit" and m.layer >= 2]
+    deposit = [m for m in full_program.moves if m.kind == "deposit" and m.layer >= 2]
     again = [m for m in later.moves if m.kind == "deposit"]
     assert all(np.array_equal(a.joints, b.joints) for a, b in zip(deposit, again))
     assert isinstance(later.blocks[1], Moves) and len(later.blocks[1]) == 2
@@ -250,14 +257,16 @@ def test_cartesian_positions_with_the_part_on_the_robot_are_those_of_the_deposit
     platform = cell.machine.chain.forward(motion.joints[rows]) @ cell.poses.carried
     position = np.concatenate([moves.position for moves in program.moves])
     rotation = np.concatenate([moves.rotation for moves in program.moves])
-    # carried along by the platform each of them comes to lie where the deposit comes out, Z to the nozzle
-    place = platform[:, :3, :3] @ position[:, :, None] + platform[:, :3, 3:]
+    # the platform carries each position to the deposition point, Z towards the nozzle
+    positions_in_cell = platform[:, :3, :3] @ position[:, :, None] + platform[:, :3, 3:]
     np.testing.assert_allclose(
-        place[:, :, 0], np.tile(cell.poses.station[:3, 3], (len(place), 1)), atol=1e-9
+        positions_in_cell[:, :, 0],
+        np.tile(cell.poses.station[:3, 3], (len(positions_in_cell), 1)),
+        atol=1e-9,
     )
     np.testing.assert_allclose(
         platform[:, :3, :3] @ rotation,
-        np.tile(cell.poses.station[:3, :3], (len(place), 1, 1)),
+        np.tile(cell.poses.station[:3, :3], (len(positions_in_cell), 1, 1)),
         atol=1e-12,
     )
     # and in part coordinates they are the points of the part
@@ -275,7 +284,8 @@ def test_a_post_of_another_maker_is_refused(planned):
 
 
 def test_points_are_added_where_joint_motion_leaves_the_bead(sliced, cell_of):
-    """With a bent torch on the robot the arm works, and a coarse bead is not followed by joint motion alone."""
+    """With a bent torch on the robot the arm moves much, and linear joint motion does not follow a
+    coarse bead."""
     from freecad_am.core.parameters.cell import NozzleParameters
 
     toolpath = sliced("sphere", 15.0)
@@ -286,12 +296,12 @@ def test_points_are_added_where_joint_motion_leaves_the_bead(sliced, cell_of):
         nozzle=NozzleParameters(tool=(0.0, 0.0, 300.0, 0.0, np.radians(45.0), 0.0)),
         branch="auto",
     )
-    found = plan_joints(toolpath, cell, JointParameters())
-    assert found.feasible, found.issues
-    assert sum(len(path.bead) for path in found.beads) > toolpath.point_count
-    task = Task(cell, spherical_wrist.branch_index(found.branch), JointParameters())
+    joint_path = plan_joints(toolpath, cell, JointParameters())
+    assert joint_path.feasible, joint_path.issues
+    assert sum(len(path.bead) for path in joint_path.beads) > toolpath.point_count
+    task = Task(cell, spherical_wrist.branch_index(joint_path.branch), JointParameters())
     arm = kdl.KdlArm(cell.machine)
-    for path in found.beads:
+    for path in joint_path.beads:
         share = np.linspace(0.0, 1.0, 21)[None, :, None]
         between = path.joints[:-1, None] + share * np.diff(path.joints, axis=0)[:, None]
         tip, _ = cell.tip_in_part(arm.forward(between.reshape(-1, 6)))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points where starts and ends of beads begin or end, on a long straight bead of two points: where PyKDL's arm brings the
-tip, with the condition that its Jacobian has there, within limits and speeds; and what axes cannot follow there is found."""
+"""Points where starts and ends of beads begin or end, on a long straight bead of two points:
+PyKDL's arm reaches them, with the conditioning of its Jacobian, within limits and speeds;
+infeasible phases are detected."""
 
 import numpy as np
 
@@ -13,23 +14,24 @@ from freecad_am.core.toolpath import Bead, BeadEnds, Layer, Toolpath
 from tests.core.planning.test_random_cells import LENGTH
 from tests.posts.planned_jobs import SETUPS
 
-LONG, STEP = 400.0, 1e-6
+BEAD_LENGTH_MM, STEP = 400.0, 1e-6
 
 
 def condition(arm, cell, joints):
-    """The ratio of the singular values of the Jacobian of the tip of a tool on the robot, by differences."""
+    """The ratio of the singular values of the Jacobian of the tip of a tool on the robot, by
+    differences."""
 
-    def at(values):
+    def tip_at(values):
         return arm.forward(values[None])[0] @ cell.poses.carried
 
-    here, columns = at(joints), []
+    tip, columns = tip_at(joints), []
     for axis in STEP * np.eye(6):
-        up, down = at(joints + axis), at(joints - axis)
-        turn, way = (
-            (up - down)[:3, :3] @ here[:3, :3].T / (2.0 * STEP),
+        up, down = tip_at(joints + axis), tip_at(joints - axis)
+        turn, velocity = (
+            (up - down)[:3, :3] @ tip[:3, :3].T / (2.0 * STEP),
             (up - down)[:3, 3] / (2.0 * STEP) / LENGTH,
         )
-        columns.append([*way, turn[2, 1], turn[0, 2], turn[1, 0]])
+        columns.append([*velocity, turn[2, 1], turn[0, 2], turn[1, 0]])
     values = np.linalg.svd(np.array(columns), compute_uv=False)
     return values[-1] / values[0]
 
@@ -37,7 +39,7 @@ def condition(arm, cell, joints):
 def planned(*ends):
     """The cell and the joint path of a straight bead with these ends."""
     up = np.broadcast_to([0.0, 0.0, 1.0], (2, 3))
-    points = np.array([[-0.5 * LONG, 30.0, 0.0], [0.5 * LONG, 30.0, 0.0]])
+    points = np.array([[-0.5 * BEAD_LENGTH_MM, 30.0, 0.0], [0.5 * BEAD_LENGTH_MM, 30.0, 0.0]])
     bead_ends = BeadEnds(*ends) if ends else None
     bead = Bead(points, up, up, np.array([0.0, 6.0]), np.full(2, 20.0), False, ends=bead_ends)
     path = Toolpath((Layer((bead,)),), np.eye(4), 2.0, 0.5, family="surface")
@@ -46,6 +48,7 @@ def planned(*ends):
 
 
 def test_points_of_phases_have_the_condition_of_where_they_are():
+    """Points of phases have the condition of their own position."""
     cell, path = planned(90.0, 5.0, 140.0, 60.0)
     assert path.feasible, path.issues
     (bead,) = path.beads
@@ -54,14 +57,16 @@ def test_points_of_phases_have_the_condition_of_where_they_are():
     np.testing.assert_allclose(
         [condition(arm, cell, row) for row in bead.joints], bead.condition, atol=1e-7
     )
-    at = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(bead.bead.points, axis=0), axis=1))]
-    for border in (90.0, at[-1] - 140.0):
-        new = int(np.abs(at - border).argmin())
-        assert abs(at[new] - border) < 0.02 and bead.condition[new] > 0.0
-        between = np.interp(at[new], at[[new - 1, new + 1]], bead.condition[[new - 1, new + 1]])
+    stations = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(bead.bead.points, axis=0), axis=1))]
+    for border in (90.0, stations[-1] - 140.0):
+        new = int(np.abs(stations - border).argmin())
+        assert abs(stations[new] - border) < 0.02 and bead.condition[new] > 0.0
+        between = np.interp(
+            stations[new], stations[[new - 1, new + 1]], bead.condition[[new - 1, new + 1]]
+        )
         assert (
             abs(bead.condition[new] - between) > 1e-6
-        )  # what lies between its neighbours would be another one
+        )  # interpolation between its neighbours would differ
     flange = arm.forward(bead.joints)
     tip = (cell.poses.mount @ np.linalg.inv(cell.poses.station) @ flange @ cell.poses.carried)[
         :, :3, 3

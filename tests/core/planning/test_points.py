@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Joints counted on along beads."""
+"""Joints unwrapped along beads."""
 
 import numpy as np
 import pytest
@@ -9,12 +9,12 @@ from freecad_am.core.planning.points import UNPOSED, Points, unwrapped, unwrappe
 
 
 def points_of(counts, sliding=None):
-    first, total = np.cumsum([0, *counts[:-1]]), sum(counts)
+    starts, total = np.cumsum([0, *counts[:-1]]), sum(counts)
     return Points(
         np.zeros((total, 3)),
         np.zeros((total, 3)),
         np.zeros(total),
-        first,
+        starts,
         np.repeat(np.arange(len(counts)), counts),
         np.zeros(len(counts), dtype=bool),
         UNPOSED,
@@ -26,32 +26,41 @@ def points_of(counts, sliding=None):
 @pytest.mark.parametrize("counts", [[1], [2, 1, 7], [40, 3, 300, 25]])
 @pytest.mark.parametrize("sliding", [None, np.array([False, False, True])])
 def test_by_whole_turns_joints_are_those_of_steps(counts, sliding):
+    """Unwrapping by whole turns agrees with unwrapping step by step."""
     rng = np.random.default_rng(len(counts))
     points = points_of(counts, sliding)
-    way = np.cumsum(rng.uniform(-2.0, 3.0, (4, len(points), 3)), axis=1)
-    way[..., 1] *= 0.02  # which stays within half a turn
-    given = way - TURN * np.round(way / TURN)
+    unwrapped_joints = np.cumsum(rng.uniform(-2.0, 3.0, (4, len(points), 3)), axis=1)
+    unwrapped_joints[..., 1] *= 0.02  # stays within half a turn
+    wrapped_joints = unwrapped_joints - TURN * np.round(unwrapped_joints / TURN)
     if sliding is not None:
-        given[..., 2] = 100.0 * way[..., 2]
-    for joints in (given, np.moveaxis(np.ascontiguousarray(np.moveaxis(given, -1, 0)), 0, -1)):
-        found = unwrapped_by_turns(joints, points)
-        assert np.abs(found - unwrapped(joints, points)).max() < 1e-9
-        assert np.array_equal(found[:, points.first], given[:, points.first])
+        wrapped_joints[..., 2] = 100.0 * unwrapped_joints[..., 2]
+    for joints in (
+        wrapped_joints,
+        np.moveaxis(np.ascontiguousarray(np.moveaxis(wrapped_joints, -1, 0)), 0, -1),
+    ):
+        result = unwrapped_by_turns(joints, points)
+        assert np.abs(result - unwrapped(joints, points)).max() < 1e-9
+        assert np.array_equal(result[:, points.first], wrapped_joints[:, points.first])
     if len(counts) > 2:
-        assert np.abs(found - given).max() > TURN
+        assert np.abs(result - wrapped_joints).max() > TURN
 
 
 def test_a_bead_with_points_out_of_reach_takes_no_other_along():
+    """Unreachable points of a bead do not affect other beads."""
     rng = np.random.default_rng(3)
     counts = [5, 1, 8, 3, 6]
     points = points_of(counts)
     joints = rng.uniform(-3.0, 3.0, (7, len(points), 2))
     joints[rng.random(joints.shape[:-1]) < 0.1] = np.nan
-    found = unwrapped(joints, points)
-    assert np.isnan(found).any() and np.isfinite(found[:, -counts[-1] :]).any()
+    result = unwrapped(joints, points)
+    assert np.isnan(result).any() and np.isfinite(result[:, -counts[-1] :]).any()
     for start, count in zip(points.first, counts):
         alone = unwrapped(joints[:, start : start + count], points_of([count]))
-        assert found[:, start : start + count] == pytest.approx(alone, abs=1e-12, nan_ok=True)
-        lost = np.isnan(joints[:, start : start + count]).any(axis=-1)
-        first = np.where(lost.any(axis=1), lost.argmax(axis=1), count)
-        assert (np.isnan(alone).any(axis=-1) == (np.arange(count) >= first[:, None])).all()
+        assert result[:, start : start + count] == pytest.approx(alone, abs=1e-12, nan_ok=True)
+        is_unreachable = np.isnan(joints[:, start : start + count]).any(axis=-1)
+        first_unreachable = np.where(
+            is_unreachable.any(axis=1), is_unreachable.argmax(axis=1), count
+        )
+        assert (
+            np.isnan(alone).any(axis=-1) == (np.arange(count) >= first_unreachable[:, None])
+        ).all()

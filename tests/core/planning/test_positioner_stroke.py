@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Axes of a positioner that have no room for a turn: beads begin elsewhere, wait at the limit or are cut. What is written is
-driven in the world by PyKDL chains built here of the numbers of the files."""
+"""Axes of a positioner with less than a turn: beads start elsewhere, wait at the limit or are
+split. The program is driven in the world by PyKDL chains built from the files."""
 
 import dataclasses
 import json
@@ -27,7 +27,7 @@ from tests.core.planning.test_external_axes import (
     TORCH,
     UP,
     bryant,
-    driven,
+    drive_chain,
     file_of_built_in,
     kdl_chain,
     kdl_pose,
@@ -37,26 +37,27 @@ from tests.programs import build
 
 TURNED = math.radians(
     70.0
-)  # of the part on the table: its seam is not where the table is in its middle
-OVERLAP, MOST = 4.0, 10.0  # mm, deg
+)  # of the part on the table: its seam is not at the middle of the table's range
+OVERLAP, MAX_TILT_DEG = 4.0, 10.0  # mm, deg
 ROBOT = "abb-irb4600-20-250"
 
 
 @pytest.fixture(scope="module")
 def hemisphere(sliced):
-    return levelled_to(sliced("sphere", 15.0, chord_error=0.2), MOST)
+    return levelled_to(sliced("sphere", 15.0, chord_error=0.2), MAX_TILT_DEG)
 
 
 @pytest.fixture(scope="module")
 def cell_with(tmp_path_factory):
-    """cell_with(toolpath, tilt, turn) -> Cell whose positioner has axes from - to + so many degrees."""
+    """cell_with(toolpath, tilt, turn) -> Cell whose positioner has axis limits of +- so many
+    degrees."""
     folder = tmp_path_factory.mktemp("positioners")
 
     def make(toolpath, tilt, turn):
-        told = json.loads(file_of_built_in().read_text(encoding="utf-8"))
-        told["limits"]["maker"]["axes"] = [[-tilt, tilt], [-turn, turn]]
+        description = json.loads(file_of_built_in().read_text(encoding="utf-8"))
+        description["limits"]["maker"]["axes"] = [[-tilt, tilt], [-turn, turn]]
         path = folder / f"{tilt}-{turn}.json"
-        path.write_text(json.dumps({**told, "id": f"short-{tilt}-{turn}"}), encoding="utf-8")
+        path.write_text(json.dumps({**description, "id": f"short-{tilt}-{turn}"}), encoding="utf-8")
         return cells.resolve(
             CellParameters(
                 machine=ROBOT,
@@ -73,22 +74,28 @@ def cell_with(tmp_path_factory):
 
 
 def in_the_world(toolpath, joints):
-    """Tip (n, 3) in part coordinates and the tool's angle to the vertical (n,), deg, of joints (n, 8)."""
+    """Tip (n, 3) in part coordinates and the tool's angle to the vertical (n,) in deg for joints
+    (n, 8)."""
     robot, robot_base = kdl_chain(machines.file_of(ROBOT))
     table, table_base = kdl_chain(file_of_built_in())
     tips, upward = [], []
     for row in joints:
-        tip = robot_base * driven(robot, row[:6]) * bryant(TORCH)
-        part = bryant(STANDS) * table_base * driven(table, row[6:]) * kdl_pose((0.0, 0.0, PLATFORM))
-        seen = (part * PyKDL.Frame(PyKDL.Rotation.RotZ(TURNED))).Inverse() * tip
-        tips.append(list(seen.p))
+        tip = robot_base * drive_chain(robot, row[:6]) * bryant(TORCH)
+        part_frame = (
+            bryant(STANDS)
+            * table_base
+            * drive_chain(table, row[6:])
+            * kdl_pose((0.0, 0.0, PLATFORM))
+        )
+        tip_in_part = (part_frame * PyKDL.Frame(PyKDL.Rotation.RotZ(TURNED))).Inverse() * tip
+        tips.append(list(tip_in_part.p))
         upward.append([-x for x in tip.M.UnitZ()])
     leans = np.degrees(np.arccos(np.clip(np.array(upward) @ UP, -1.0, 1.0)))
     return np.array(tips) @ toolpath.frame[:3, :3].T + toolpath.frame[:3, 3], leans
 
 
 def off_beads(points, beads):
-    """mm from points (n, 3) to the nearest of the beads' polylines."""
+    """Distance (mm) from points (n, 3) to the nearest of the beads' polylines."""
     nearest = np.full(len(points), np.inf)
     for bead in beads:
         start, along = bead.points[:-1], np.diff(bead.points, axis=0)
@@ -100,8 +107,9 @@ def off_beads(points, beads):
     return nearest
 
 
-def of_text(cell, toolpath, planned):
-    """Joints (n, 8) of the deposit in a text written for ABB, by its numbers, and those of all its moves."""
+def read_joints(cell, toolpath, planned):
+    """Joints (n, 8) of the deposit in a program for ABB, from its numbers, and those of all its
+    moves."""
     motion, issues = assemble(planned, cell, ProcessParameters())
     assert not [issue for issue in issues if issue.level == "error"]
     program = build(motion, cell, ProcessParameters(), ProgramParameters(post="abb"), "job")
@@ -135,76 +143,82 @@ def codes(planned):
 )
 @pytest.mark.always("134.0-170.0-SEAM_MOVED", "134.0-80.0-BEAD_SPLIT")
 def test_the_text_keeps_the_limits_and_lies_on_the_beads(hemisphere, cell_with, tilt, turn, said):
+    """The program keeps the limits and follows the beads."""
     cell = cell_with(hemisphere, tilt, turn)
     planned = plan_joints(hemisphere, cell, JointParameters())
     assert planned.feasible, [issue.message for issue in planned.issues]
     assert codes(planned) & {"SEAM_MOVED", "BEAD_SPLIT"} == {said}
-    deposit, moves = of_text(cell, hemisphere, planned)
-    most = np.r_[cell.robot.limits("maker").upper, np.radians([tilt, turn])]
-    least = np.r_[cell.robot.limits("maker").lower, -np.radians([tilt, turn])]
-    assert ((moves >= least - 1e-9) & (moves <= most + 1e-9)).all()
+    deposit, moves = read_joints(cell, hemisphere, planned)
+    upper = np.r_[cell.robot.limits("maker").upper, np.radians([tilt, turn])]
+    lower = np.r_[cell.robot.limits("maker").lower, -np.radians([tilt, turn])]
+    assert ((moves >= lower - 1e-9) & (moves <= upper + 1e-9)).all()
     tips, leans = in_the_world(hemisphere, deposit)
     beads = [bead for _, _, bead in hemisphere]
     assert (
         off_beads(tips, beads).max() < hemisphere.chord_error + 0.01
     )  # the last digits of the text
-    assert leans.max() < MOST + 0.01
-    # and every point of every bead is met, by bead or piece
+    assert leans.max() < MAX_TILT_DEG + 0.01
+    # and every point of every bead is reached, by a whole or a split bead
     for layer, bead in enumerate(bead for _, _, bead in hemisphere):
-        mine = [path.bead for path in planned.beads if path.layer == layer]
-        assert off_beads(bead.points, mine).max() < 1e-9
-        assert sum(piece.length for piece in mine) == pytest.approx(bead.length, rel=2e-3)
-        for piece, after in zip(mine, mine[1:]):
-            assert np.abs(piece.points[-1] - after.points[0]).max() < 1e-9
+        beads_of_layer = [path.bead for path in planned.beads if path.layer == layer]
+        assert off_beads(bead.points, beads_of_layer).max() < 1e-9
+        assert sum(current.length for current in beads_of_layer) == pytest.approx(
+            bead.length, rel=2e-3
+        )
+        for current, following in zip(beads_of_layer, beads_of_layer[1:]):
+            assert np.abs(current.points[-1] - following.points[0]).max() < 1e-9
         assert [path.index for path in planned.beads if path.layer == layer] == list(
-            range(len(mine))
+            range(len(beads_of_layer))
         )
 
 
 @pytest.mark.parametrize("turn", [170.0, 200.0])
 @pytest.mark.long
 def test_beads_that_begin_elsewhere_and_the_last_pieces_run_on_as_asked(sliced, cell_with, turn):
-    levelled = levelled_to(sliced("sphere", 10.0, chord_error=0.1), MOST)
+    """Beads with moved starts and the last of split beads have the requested overlap."""
+    levelled = levelled_to(sliced("sphere", 10.0, chord_error=0.1), MAX_TILT_DEG)
     toolpath = dataclasses.replace(
         levelled, rules=dataclasses.replace(levelled.rules, overlap=OVERLAP)
     )
     planned = plan_joints(toolpath, cell_with(toolpath, 134.0, turn), JointParameters())
     assert planned.feasible and "BEAD_SPLIT" in codes(
         planned
-    )  # small rings have no room for the overlap too
+    )  # small rings have no range for the overlap as well
     moved = 0
     for layer, bead in enumerate(bead for _, _, bead in toolpath):
-        mine = [path for path in planned.beads if path.layer == layer]
-        assert sum(path.bead.length for path in mine) == pytest.approx(
+        paths_of_layer = [path for path in planned.beads if path.layer == layer]
+        assert sum(path.bead.length for path in paths_of_layer) == pytest.approx(
             bead.length + min(OVERLAP, bead.length), rel=3e-3
         )
-        if len(mine) == 1 and np.ptp(mine[0].joints[:, 7]) > math.radians(330.0):
+        if len(paths_of_layer) == 1 and np.ptp(paths_of_layer[0].joints[:, 7]) > math.radians(
+            330.0
+        ):
             moved += 1
-            assert np.abs(mine[0].joints[:, 7]).max() <= math.radians(turn)
+            assert np.abs(paths_of_layer[0].joints[:, 7]).max() <= math.radians(turn)
             if turn < 180.0:
-                assert np.linalg.norm(mine[0].bead.points[0] - bead.points[0]) > 10.0
+                assert np.linalg.norm(paths_of_layer[0].bead.points[0] - bead.points[0]) > 10.0
                 assert (
-                    np.abs(np.diff(mine[0].joints[-3:, 7])).max() < 1e-12
+                    np.abs(np.diff(paths_of_layer[0].joints[-3:, 7])).max() < 1e-12
                 )  # it waits at its limit
     assert moved > 2
     tips, leans = in_the_world(toolpath, planned.joints)
     assert off_beads(tips, [bead for _, _, bead in toolpath]).max() < 2.0 * toolpath.chord_error
-    assert leans.max() < MOST + 1e-6
+    assert leans.max() < MAX_TILT_DEG + 1e-6
 
 
 def test_a_wide_axis_is_left_alone(hemisphere, cell_with, monkeypatch):
-    """What fits, or fits from another seam after the planning, is never looked at anew."""
+    """Beads that fit, possibly with a later seam, are not searched again."""
     monkeypatch.setattr(stroke, "find_room", None)
     for turn in (185.0, 400.0):
-        beads, places, issues = level.levelled(cell_with(hemisphere, 134.0, turn), hemisphere)
+        beads, bead_places, issues = level.levelled(cell_with(hemisphere, 134.0, turn), hemisphere)
         assert (len(beads), issues) == (len(hemisphere.layers), [])
-        assert places == [(layer, index) for layer, index, _ in hemisphere]
+        assert bead_places == [(layer, index) for layer, index, _ in hemisphere]
 
 
 @pytest.mark.parametrize(("tilt", "turn", "axis"), [(134.0, 30.0, "e2"), (35.0, 200.0, "e1")])
 @pytest.mark.long
 def test_what_no_cut_helps_is_refused_by_name(sliced, cell_with, tilt, turn, axis):
-    toolpath = levelled_to(sliced("sphere", 10.0, chord_error=0.1), MOST)
+    toolpath = levelled_to(sliced("sphere", 10.0, chord_error=0.1), MAX_TILT_DEG)
     planned = plan_joints(
         toolpath, cell_with(toolpath, tilt, turn), JointParameters(method="constant")
     )
@@ -217,12 +231,12 @@ def test_what_no_cut_helps_is_refused_by_name(sliced, cell_with, tilt, turn, axi
 
 def test_no_pieces_where_no_way_leads_on(hemisphere, cell_with):
     cell, bead = cell_with(hemisphere, 134.0, 30.0), hemisphere.layers[2].beads[0]
-    assert stroke.find_room(cell, bead, math.radians(MOST), np.zeros(2), 0.0) == []
+    assert stroke.find_room(cell, bead, math.radians(MAX_TILT_DEG), np.zeros(2), 0.0) == []
     assert len(stroke.find_room(cell, bead, math.radians(60.0), np.zeros(2), 0.0)) > 0
 
 
 def test_pieces_are_as_few_and_as_equal_as_may_be():
-    """Held against every way to cut a dozen points, of random reaches."""
+    """Compared with every way to split a dozen points of random reach."""
     random = np.random.default_rng(3)
     for _ in range(200):
         reach = np.minimum(np.maximum.accumulate(np.arange(12) + random.integers(1, 6, 12)), 11)
@@ -239,11 +253,11 @@ def test_pieces_are_as_few_and_as_equal_as_may_be():
         assert all(a < b <= reach[a] for a, b in zip(even, even[1:]))
 
 
-def _ways(last, count, first=0):
-    """All ways to get from the first point to the last one in so many pieces."""
+def _ways(end_point, count, start_point=0):
+    """All ways to get from the first point to the last one in a number of steps."""
     if count == 1:
-        yield [first, last]
+        yield [start_point, end_point]
         return
-    for end in range(first + 1, last):
-        for rest in _ways(last, count - 1, end):
-            yield [first, *rest]
+    for end in range(start_point + 1, end_point):
+        for remainder in _ways(end_point, count - 1, end):
+            yield [start_point, *remainder]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every promise of the preflight is broken once, by evidence that is changed in one place: it is found there, and nothing
-else is. What planning has concluded stays as it was: there are no issues."""
+"""Every promise of the preflight is broken once by a single change of the evidence: the preflight
+reports the change at its position and nothing else. Issues of planning stay empty."""
 
 import dataclasses
 
@@ -21,7 +21,7 @@ from freecad_am.core.strategies.clearance import nozzle_check
 
 WIDTH, HEIGHT = 3.0, 10.0
 LINKS = ("base", "q1", "q2", "q3", "q4", "q5", "q6", "part", "nozzle")
-ROW = 300  # of the deposit, of which something is changed
+ROW = 300  # of the deposit, the changed row
 
 
 @pytest.fixture(scope="module")
@@ -58,15 +58,16 @@ def sound(sliced, cell_of):
             None,
             Balance("Part", 1e5, 0.0, 1e5, 0.0, twice=0.0),
             nozzle_check.Looked(100, 0, None),
-            driven(cell, path, motion),
+            check_rapids(cell, path, motion),
         ),
     )
 
 
-def driven(cell, path, motion, up=0.0):
-    """What is looked at on rapids, the beads raised by so much."""
+def check_rapids(cell, path, motion, up=0.0):
+    """Contacts on rapids, with the beads raised."""
     beads = [
-        dataclasses.replace(one.bead, points=one.bead.points + [0.0, 0.0, up]) for one in path.beads
+        dataclasses.replace(bead_path.bead, points=bead_path.bead.points + [0.0, 0.0, up])
+        for bead_path in path.beads
     ]
     return looked_at(motion, beads, cell, (), WIDTH, HEIGHT, 20_000)
 
@@ -91,7 +92,7 @@ def changed(motion, row, **columns):
 def test_a_sound_job_keeps_all_promises_and_says_what_was_not_checked(sound):
     entries = promises(sound[2])
     assert not broken(sound[2])
-    # the file of the robot gives no payload
+    # the robot's file has no payload
     unchecked = {entry.promise for entry in entries if entry.ok is None}
     assert unchecked == {"UFRAME 1", "Robot or positioner can carry the part"}
     assert all(entry.worst is not None for entry in entries if entry.ok)
@@ -104,8 +105,10 @@ def test_a_row_beyond_a_limit(sound, role):
     row = int(np.flatnonzero(motion.role == role)[5])
     joints = motion.joints[row].copy()
     joints[1] = cell.limits.upper[1] + np.radians(0.5)
-    found = broken(dataclasses.replace(evidence, motion=changed(motion, row, joints=joints)))
-    entry = found["Every axis stays within its limits"]
+    broken_promises = broken(
+        dataclasses.replace(evidence, motion=changed(motion, row, joints=joints))
+    )
+    entry = broken_promises["Every axis stays within its limits"]
     assert tuple(entry.place) == place_of(motion, row) and entry.worst == pytest.approx(
         -0.5, abs=1e-6
     )
@@ -116,11 +119,15 @@ def test_joints_that_lead_elsewhere(sound):
     motion = evidence.motion
     row = int(np.flatnonzero(motion.deposit)[ROW])
     joints = motion.joints[row] + np.radians([0.0, 0.0, 0.01, 0.0, 0.0, 0.0])
-    found = broken(dataclasses.replace(evidence, motion=changed(motion, row, joints=joints)))
-    entry = found["The joint values reach every planned point"]
+    broken_promises = broken(
+        dataclasses.replace(evidence, motion=changed(motion, row, joints=joints))
+    )
+    entry = broken_promises["The joint values reach every planned point"]
     assert tuple(entry.place) == place_of(motion, row) and 0.01 < entry.worst < 0.5
-    lost = broken(dataclasses.replace(evidence, motion=changed(motion, row, joints=np.nan)))
-    assert tuple(lost["The joint values reach every planned point"].place) == place_of(motion, row)
+    unreachable = broken(dataclasses.replace(evidence, motion=changed(motion, row, joints=np.nan)))
+    assert tuple(unreachable["The joint values reach every planned point"].place) == place_of(
+        motion, row
+    )
 
 
 @pytest.mark.parametrize("rapid", [False, True])
@@ -131,9 +138,11 @@ def test_an_axis_asked_for_too_much(sound, rapid):
     turned = np.abs(np.diff(motion.joints, axis=0, prepend=motion.joints[:1])).max(axis=1)
     row = int(rows[turned[rows] > 1e-4][2])
     share = (np.abs(motion.joints[row] - motion.joints[row - 1]) / cell.machine.max_speed).max()
-    found = broken(dataclasses.replace(evidence, motion=changed(motion, row, duration=share / 1.1)))
-    assert set(found) == {"No axis exceeds its maximum speed"}
-    (entry,) = found.values()
+    broken_promises = broken(
+        dataclasses.replace(evidence, motion=changed(motion, row, duration=share / 1.1))
+    )
+    assert set(broken_promises) == {"No axis exceeds its maximum speed"}
+    (entry,) = broken_promises.values()
     assert tuple(entry.place) == place_of(motion, row) and entry.worst == pytest.approx(110.0)
 
 
@@ -143,22 +152,24 @@ def test_a_nozzle_that_meets_deposit_on_rapids_though_planning_found_nothing(sou
         evidence.rapids.moves == int((~evidence.motion.deposit[1:]).sum())
         and evidence.rapids.step <= 2.0
     )
-    found = broken(dataclasses.replace(evidence, rapids=driven(cell, path, evidence.motion, 25.0)))
-    assert set(found) == {"The nozzle stays clear on rapids"}
-    (entry,) = found.values()
+    broken_promises = broken(
+        dataclasses.replace(evidence, rapids=check_rapids(cell, path, evidence.motion, 25.0))
+    )
+    assert set(broken_promises) == {"The nozzle stays clear on rapids"}
+    (entry,) = broken_promises.values()
     assert entry.worst >= 5.0 and entry.place is not None
 
 
 def test_layers_that_are_not_one_layer_height_apart(sound):
-    """What families allow of the distance they say themselves; how far the worst is off is found from the beads alone."""
+    """Families report their own spacing; the worst deviation is computed from the beads only."""
     evidence = sound[2]
     for share in (0.5, -0.4):
-        way = share * HEIGHT * np.array([0.0, 0.0, 1.0])
+        shift = share * HEIGHT * np.array([0.0, 0.0, 1.0])
         layers = tuple(
             dataclasses.replace(
                 layer,
                 beads=tuple(
-                    dataclasses.replace(bead, points=bead.points + way, tangents=None)
+                    dataclasses.replace(bead, points=bead.points + shift, tangents=None)
                     for bead in layer.beads
                 ),
             )
@@ -167,21 +178,23 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
             for number, layer in enumerate(evidence.toolpath.layers)
         )
         issue = Issue(WARNING, "SPACING", "layers are not one layer height apart", 3)
-        found = broken(
+        broken_promises = broken(
             dataclasses.replace(
                 evidence,
                 toolpath=dataclasses.replace(evidence.toolpath, layers=layers),
                 issues=(issue,),
             )
         )
-        assert set(found) == {"Layers are one layer height apart"}
-        (entry,) = found.values()
+        assert set(broken_promises) == {"Layers are one layer height apart"}
+        (entry,) = broken_promises.values()
         below, above = (np.vstack([bead.points for bead in layers[k].beads]) for k in (2, 3))
-        away = cKDTree(below).query(above)[0]
+        distances = cKDTree(below).query(above)[0]
         assert entry.place[0] == 3 and entry.unit == "mm"
-        assert entry.worst == pytest.approx(away[np.argmax(np.abs(away - HEIGHT))], rel=0.02)
-    other = Issue(NOTE, "SPACING", "layers are one layer height apart where the wall allows", 3)
-    assert not broken(dataclasses.replace(evidence, issues=(other,)))
+        assert entry.worst == pytest.approx(
+            distances[np.argmax(np.abs(distances - HEIGHT))], rel=0.02
+        )
+    note = Issue(NOTE, "SPACING", "layers are one layer height apart where the wall allows", 3)
+    assert not broken(dataclasses.replace(evidence, issues=(note,)))
 
 
 @pytest.mark.parametrize(
@@ -211,14 +224,16 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
 )  # fmt: skip
 def test_what_is_broken_is_told_and_nothing_else(sound, promise, change):
     evidence = sound[2]
-    found = broken(dataclasses.replace(evidence, **change(evidence)))
-    assert set(found) == {promise}
+    broken_promises = broken(dataclasses.replace(evidence, **change(evidence)))
+    assert set(broken_promises) == {promise}
 
 
 def test_a_text_that_was_read_back_with_errors_breaks_both_promises_of_it(sound):
     evidence = sound[2]
-    found = broken(dataclasses.replace(evidence, read=dataclasses.replace(evidence.read, ok=False)))
-    assert set(found) == {
+    broken_promises = broken(
+        dataclasses.replace(evidence, read=dataclasses.replace(evidence.read, ok=False))
+    )
+    assert set(broken_promises) == {
         "The program moves the tool to the planned points",
         "The program follows the planned path between its points",
     }
@@ -247,17 +262,17 @@ def test_what_planning_has_found_breaks_its_promise_whatever_the_figures_say(
     sound, promise, level, codes
 ):
     for code in codes:
-        found = broken(
+        broken_promises = broken(
             dataclasses.replace(sound[2], issues=(Issue(level, code, "as planning says", 3, 0),))
         )
-        assert set(found) == {promise}, code
+        assert set(broken_promises) == {promise}, code
 
 
-def without(evidence, **parts):
+def without(evidence, **changes):
     """The evidence with parts of its toolpath, or of its cell, replaced."""
     return {
         name: dataclasses.replace(getattr(evidence, name), **values)
-        for name, values in parts.items()
+        for name, values in changes.items()
     }
 
 

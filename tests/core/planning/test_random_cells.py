@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Random cells with retract distances from nothing to 200 mm: every row of what is not refused can be gone, rapids included,
-in the motion and, where the robot has a post, in the text.
-
-Limits are those of the machine file, read here; the arm is PyKDL's.
-"""
+"""Random cells with retract distances up to 200 mm: every row of an accepted job can be executed,
+including rapids, in the motion and, where the robot has a post, in the program. Limits are read
+from the machine file here; the arm is PyKDL's."""
 
 import json
 from pathlib import Path
@@ -33,7 +31,7 @@ FLOOR, LENGTH = 0.02, 1000.0
 
 
 def random_cell(seed):
-    """Parameters of a cell, and a retract distance, that a number gives."""
+    """Parameters of a cell and a retract distance for a seed."""
     rng = np.random.default_rng(seed)
     name = list(MACHINES)[seed % len(MACHINES)]
     ahead, high = MACHINES[name]
@@ -56,15 +54,15 @@ def random_cell(seed):
     }, lift
 
 
-def within(machine, joints):
-    """(n,) whether joints (n, 6) rad are within the limits of a machine file."""
-    told = json.loads((FILES / f"{machine}.json").read_text(encoding="utf-8"))["limits"]["maker"]
+def find_within_limits(machine, joints):
+    """Whether joints (n, 6) in rad are within the limits of a machine file."""
+    limits = json.loads((FILES / f"{machine}.json").read_text(encoding="utf-8"))["limits"]["maker"]
     degrees = np.degrees(joints)
     fits = np.ones(len(joints), dtype=bool)
-    for axis, ends in enumerate(told["axes"]):
+    for axis, ends in enumerate(limits["axes"]):
         if ends is not None:
             fits &= (degrees[:, axis] >= ends[0] - 1e-9) & (degrees[:, axis] <= ends[1] + 1e-9)
-    for coupled in told.get("coupled", ()):
+    for coupled in limits.get("coupled", ()):
         low, high = coupled["range"]
         value = degrees @ np.array(coupled["coefficients"], dtype=float)
         fits &= (value >= low - 1e-9) & (value <= high + 1e-9)
@@ -72,28 +70,29 @@ def within(machine, joints):
 
 
 def conditions(arm, cell, joints):
-    """(n,) the ratio of the singular values of the arm's Jacobian at the point of deposit, by differences."""
+    """The ratio (n,) of the singular values of the arm's Jacobian at the deposition point, by
+    differences."""
     step = 1e-6
     moved = [
         arm.forward(joints + sign * step * np.eye(6)[axis]) for axis in range(6) for sign in (1, -1)
     ]
-    here = arm.forward(joints)
-    found = []
+    flange = arm.forward(joints)
+    ratios = []
     for k in range(len(joints)):
-        tip = np.linalg.inv(here[k]) @ np.append(cell.poses.station[:3, 3], 1.0)
+        tip = np.linalg.inv(flange[k]) @ np.append(cell.poses.station[:3, 3], 1.0)
         columns = []
         for axis in range(6):
             up, down = moved[2 * axis][k], moved[2 * axis + 1][k]
-            turn = (up[:3, :3] - down[:3, :3]) @ here[k][:3, :3].T / (2 * step)
-            way = (up @ tip - down @ tip)[:3] / (2 * step) / LENGTH
-            columns.append([*way, turn[2, 1], turn[0, 2], turn[1, 0]])
+            turn = (up[:3, :3] - down[:3, :3]) @ flange[k][:3, :3].T / (2 * step)
+            velocity = (up @ tip - down @ tip)[:3] / (2 * step) / LENGTH
+            columns.append([*velocity, turn[2, 1], turn[0, 2], turn[1, 0]])
         values = np.linalg.svd(np.array(columns).T, compute_uv=False)
-        found.append(values[-1] / values[0])
-    return np.array(found)
+        ratios.append(values[-1] / values[0])
+    return np.array(ratios)
 
 
-def driven(seed, sliced, cell_of):
-    """What became of a cell: 'no plan', 'refused' for its rapids, or 'sound', and then looked over."""
+def run_cell(seed, sliced, cell_of):
+    """Plan and check one cell: 'no plan', 'refused' for its rapids, or 'sound' after all checks."""
     toolpath = sliced("sphere", 15.0, chord_error=0.3)
     parameters, lift = random_cell(seed)
     cell = cell_of(toolpath, **parameters)
@@ -110,16 +109,16 @@ def driven(seed, sliced, cell_of):
         )
         return "refused", issues
     assert np.isfinite(motion.joints).all()
-    assert within(parameters["machine"], motion.joints).all(), (seed, lift)
+    assert find_within_limits(parameters["machine"], motion.joints).all(), (seed, lift)
     if parameters["machine"] in POSTS:
         settings = ProgramParameters(post=POSTS[parameters["machine"]], motion="joint")
         files = catalogue.load(settings.post).write(build(motion, cell, process, settings, "job"))
-        told = row_limits.told_joints(
+        program_joints = row_limits.told_joints(
             {name: text.decode() for name, text in files.items()}, parameters["machine"]
         )
         assert (
-            len(told) >= motion.moves.sum()
-            and within(parameters["machine"], np.radians(told)).all()
+            len(program_joints) >= motion.moves.sum()
+            and find_within_limits(parameters["machine"], np.radians(program_joints)).all()
         ), (seed, lift)
     arm = kdl.KdlArm(cell.machine)
     flange = arm.forward(motion.joints)
@@ -142,10 +141,10 @@ def driven(seed, sliced, cell_of):
 
 
 def look_over(seeds, sliced, cell_of):
-    """How many cells came to what."""
+    """Count the outcomes over all cells."""
     counts = {"no plan": 0, "refused": 0, "sound": 0}
     for seed in seeds:
-        counts[driven(seed, sliced, cell_of)[0]] += 1
+        counts[run_cell(seed, sliced, cell_of)[0]] += 1
     return counts
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rapid moves and bodies around the part: what is in the way is found, and passed over where that is possible."""
+"""Rapids and obstacles around the part: obstacles are detected, and avoided where possible."""
 
 import numpy as np
 import pytest
@@ -13,8 +13,10 @@ from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.simulation import rapid_contacts
 
 
-def spike(at, size, name):
-    vertices = at + size * np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], dtype=float)
+def spike(centre, size, name):
+    vertices = centre + size * np.array(
+        [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], dtype=float
+    )
     return Body(name, vertices, np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]))
 
 
@@ -26,22 +28,23 @@ def planned(sliced, cell_of):
 
 
 def collisions(motion, cell, path, bodies):
-    """(layer, bead) of the beads on the rapid way to which something is met, driven by what did not plan them."""
-    looked = rapid_contacts.looked_at(
-        motion, [one.bead for one in path.beads], cell, bodies, 0.0, 0.0, 200_000
+    """(layer, bead) of the beads whose preceding rapids touch an obstacle, by a check independent
+    of planning."""
+    contacts = rapid_contacts.looked_at(
+        motion, [bead_path.bead for bead_path in path.beads], cell, bodies, 0.0, 0.0, 200_000
     )
-    assert looked.step == 0.5
-    return {(int(motion.layer[row]), int(motion.bead[row])) for row in looked.rows}
+    assert contacts.step == 0.5
+    return {(int(motion.layer[row]), int(motion.bead[row])) for row in contacts.rows}
 
 
 def travels_of(motion):
-    """The rows that end a way between two beads; the way down onto a start is none of them."""
+    """The rows that end a travel between two beads; approaches do not count."""
     rows = np.flatnonzero(~motion.deposit[1:] & ~motion.deposit[:-1]) + 1
     return rows[~np.append(motion.deposit[1:], False)[rows]]
 
 
 def looks(motion, cell, row, count=400):
-    """Tip and axis at many places on the way to a row."""
+    """Tip and axis at many positions on the move to a row."""
     share = np.linspace(0, 1, count)[:, None]
     joints = motion.joints[row - 1] + share * (motion.joints[row] - motion.joints[row - 1])
     return cell.tip_in_part(cell.machine.chain.forward(joints))
@@ -59,22 +62,23 @@ def inside(point, tip, axis, nozzle):
 
 
 def test_a_body_in_the_way_is_found_and_one_beside_it_is_not(planned):
+    """An obstacle on the way is detected, and one next to it is not."""
     cell, joint_path = planned
     motion, issues = assemble(joint_path, cell, ProcessParameters())
     assert not issues
     travels = travels_of(motion)
     for row in travels[:4]:
         tip, axis = looks(motion, cell, row)
-        at = tip[200] + 30.0 * axis[200]
-        body = spike(at, 0.3, "clamp")
-        found = collisions(motion, cell, joint_path, [body])
-        wanted = {
+        centre = tip[200] + 30.0 * axis[200]
+        body = spike(centre, 0.3, "clamp")
+        detected = collisions(motion, cell, joint_path, [body])
+        expected = {
             (int(motion.layer[k]), int(motion.bead[k]))
             for k in np.flatnonzero(~motion.deposit[1:]) + 1
             if any(inside(corner, *looks(motion, cell, k), cell.nozzle) for corner in body.vertices)
         }
-        assert (int(motion.layer[row]), int(motion.bead[row])) in wanted and found == wanted
-        assert not collisions(motion, cell, joint_path, [spike(at + [0, 0, 400], 0.3, "clamp")])
+        assert (int(motion.layer[row]), int(motion.bead[row])) in expected and detected == expected
+        assert not collisions(motion, cell, joint_path, [spike(centre + [0, 0, 400], 0.3, "clamp")])
 
 
 def test_the_tool_is_withdrawn_further_to_pass_a_body_or_it_says_so(planned):
@@ -87,7 +91,7 @@ def test_the_tool_is_withdrawn_further_to_pass_a_body_or_it_says_so(planned):
     assert not has_errors(issues) and [issue.code for issue in issues] == ["RAPID_LIFTED"]
     for k in travels_of(passed):
         assert not inside(low.vertices.mean(axis=0), *looks(passed, cell, k), cell.nozzle)
-    # far higher than eight times the lift, and still passed
+    # far higher than eight times the retract distance, but still avoided
     little = ProcessParameters(between_layers=BetweenLayersParameters(lift=0.5))
     motion, _ = assemble(joint_path, cell, little)
     tip, axis = looks(motion, cell, travels_of(motion)[0])
@@ -108,15 +112,16 @@ def test_the_tool_is_withdrawn_further_to_pass_a_body_or_it_says_so(planned):
 
 
 def test_what_is_above_the_nozzle_counts_where_it_is_withdrawn_further_than_it_is_long(planned):
+    """Obstacles above the nozzle count if the retract is longer than the nozzle."""
     cell, joint_path = planned
     lift = 1.5 * cell.nozzle.length
     high = ProcessParameters(between_layers=BetweenLayersParameters(lift=lift))
     motion, issues = assemble(joint_path, cell, high)
     assert not has_errors(issues)
     row = np.flatnonzero(motion.deposit[:-1] & ~motion.deposit[1:])[0]
-    at = motion.position[row] + (cell.nozzle.length + 0.25 * lift) * motion.tool[row]
-    found = collisions(motion, cell, joint_path, [spike(at, 0.3, "beam")])
-    assert (int(motion.layer[row + 1]), int(motion.bead[row + 1])) in found
-    # what is beside the way is not in it
+    centre = motion.position[row] + (cell.nozzle.length + 0.25 * lift) * motion.tool[row]
+    detected = collisions(motion, cell, joint_path, [spike(centre, 0.3, "beam")])
+    assert (int(motion.layer[row + 1]), int(motion.bead[row + 1])) in detected
+    # an obstacle next to the travel does not touch
     aside = np.cross(motion.tool[row], [1.0, 0.0, 0.0])
-    assert not collisions(motion, cell, joint_path, [spike(at + 3000.0 * aside, 0.3, "beam")])
+    assert not collisions(motion, cell, joint_path, [spike(centre + 3000.0 * aside, 0.3, "beam")])

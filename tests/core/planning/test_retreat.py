@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`process.retreat`: open beads go back over their end, by lengths that are measured on the path itself."""
+"""`process.retreat`: open beads return over their end, by lengths measured on the path."""
 
 import math
 
@@ -12,8 +12,8 @@ from freecad_am.core.toolpath import Bead
 RADIUS = 30.0
 
 
-def arc(turn, n=61, closed=False, z=10.0, told=False):
-    """A bead on a circle, which leans outwards more and more."""
+def arc(turn, n=61, closed=False, z=10.0, with_tangents=False):
+    """A bead on a circle with increasing outward lean."""
     angle = np.linspace(0.0, turn, n)
     points = np.stack([RADIUS * np.cos(angle), RADIUS * np.sin(angle), np.full(n, z)], axis=1)
     if closed:
@@ -23,7 +23,7 @@ def arc(turn, n=61, closed=False, z=10.0, told=False):
         [np.sin(lean) * np.cos(angle), np.sin(lean) * np.sin(angle), np.cos(lean)], axis=1
     )
     along = np.stack([-np.sin(angle), np.cos(angle), np.zeros(n)], axis=1)
-    tangents = np.stack([along, along], axis=1) if told else None
+    tangents = np.stack([along, along], axis=1) if with_tangents else None
     speed = 6.0 + 2.0 * np.sin(angle)
     return Bead(
         points,
@@ -46,13 +46,14 @@ def steps(points):
 @pytest.mark.parametrize("turn", [2.0, 5.0])
 @pytest.mark.parametrize("length", [0.01, 1.0, 7.3, 41.0, 1000.0])
 def test_the_end_is_laid_once_more_backwards(length, turn, told):
-    bead = arc(turn, told=told)
+    """The end of an open bead is traversed once more backwards."""
+    bead = arc(turn, with_tangents=told)
     longer, n = gone_back(bead, length), len(bead)
     back = min(length, bead.length)
     assert longer.length - bead.length == pytest.approx(back, abs=1e-3)
     for name in ("points", "build", "tool", "speed", "width", "height"):
         np.testing.assert_array_equal(getattr(longer, name)[:n], getattr(bead, name))
-    # what each point says is a function of where it is on the circle, on the way there and back
+    # the values of each point depend on its position on the circle only, forwards and backwards
     angle = np.arctan2(longer.points[:, 1], longer.points[:, 0]) % math.tau
     np.testing.assert_allclose(np.hypot(*longer.points[:, :2].T), RADIUS, atol=2e-6)
     np.testing.assert_allclose(longer.width, 5.0 + angle, atol=1e-3)
@@ -62,14 +63,14 @@ def test_the_end_is_laid_once_more_backwards(length, turn, told):
     assert (np.diff(angle[n - 1 :]) < 0.0).all() and angle[-1] == pytest.approx(
         turn - back / RADIUS, abs=2e-3
     )
-    # the curve between its points is the same circle, everywhere but at none of its corners
+    # the curve between its points is the same circle, except at its corner
     between, tangent = longer.outline.at(np.arange(len(longer) - 1), 0.3)
     np.testing.assert_allclose(np.hypot(*between[:, :2].T), RADIUS, atol=1e-5)
     sense = np.cross(between, tangent)[:, 2]
     assert (sense[: n - 1] > 0.0).all() and (sense[n - 1 :] < 0.0).all()
-    # times: the segments back are driven as fast as they were on the way there
-    whole = steps(longer.points)[n - 1 : -1]
-    np.testing.assert_allclose(longer.speed[n:-1], bead.speed[::-1][: len(whole)])
+    # the segments back have the speeds of the way there
+    lengths_back = steps(longer.points)[n - 1 : -1]
+    np.testing.assert_allclose(longer.speed[n:-1], bead.speed[::-1][: len(lengths_back)])
 
 
 def test_closed_beads_and_no_length_change_nothing():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The same job gives the same bytes: wherever its arrays lie in memory, and whatever the last bit of a tie."""
+"""The same job gives the same bytes, wherever its arrays are in memory and whatever the last bit of
+a tie."""
 
 import dataclasses
 
@@ -18,12 +19,12 @@ from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 TURN = 2.0 * np.pi
 COLUMNS = ("points", "build", "tool", "parameter", "speed")
-# numpy works these out in two ways, by vectors and one by one, which differ in the last bit
+# numpy computes these in two ways, vectorised and one by one, which differ in the last bit
 TWO_WAYS = ("sin", "cos", "tan", "arcsin", "arccos", "arctan", "arctan2", "exp", "log", "power")
 
 
 def wall(lean=0.9):
-    """Rings that are mirror images of themselves, leaning so far that not all limits can be kept."""
+    """Mirror-symmetric rings, leaning so far that not all limits can be kept."""
     angle = np.linspace(0.0, TURN, 61)
     layers = []
     for k in range(4):
@@ -39,14 +40,14 @@ def wall(lean=0.9):
 
 
 def changed(toolpath, change):
-    def bead(one):
-        columns = {name: change(getattr(one, name)) for name in COLUMNS}
+    def bead(original):
+        columns = {name: change(getattr(original, name)) for name in COLUMNS}
         for name in ("points", "build", "tool"):
             columns[name][-1] = columns[name][0]
         for name in ("build", "tool"):
             columns[name] /= np.linalg.norm(columns[name], axis=1, keepdims=True)
-        columns["parameter"] = one.parameter.copy()
-        return dataclasses.replace(one, **columns)
+        columns["parameter"] = original.parameter.copy()
+        return dataclasses.replace(original, **columns)
 
     layers = (
         dataclasses.replace(layer, beads=tuple(map(bead, layer.beads))) for layer in toolpath.layers
@@ -54,8 +55,8 @@ def changed(toolpath, change):
     return dataclasses.replace(toolpath, layers=tuple(layers))
 
 
-def moved(array, offset):
-    """A copy at so many bytes behind a multiple of 64."""
+def copy_at_offset(array, offset):
+    """A copy at an offset in bytes from a multiple of 64."""
     room = np.empty(array.nbytes + 128, dtype=np.uint8)
     start = -room.ctypes.data % 64 + offset
     copy = room[start : start + array.nbytes].view(array.dtype).reshape(array.shape)
@@ -80,39 +81,42 @@ def bytes_of(motion):
 
 @pytest.mark.parametrize(("lean", "degree"), [(0.9, 1), (0.3, 3)])
 def test_copies_elsewhere_in_memory_give_the_same_bytes(lean, degree):
+    """Copies elsewhere in memory give the same bytes."""
     rng = np.random.default_rng(7)
     toolpath = wall(lean)
-    wanted = bytes_of(motion_of(toolpath, degree)[1])
+    expected = bytes_of(motion_of(toolpath, degree)[1])
     for _ in range(3):
         clutter = [np.empty(size) for size in rng.integers(1, 4000, size=80)]
         del clutter[::2]
-        copy = changed(toolpath, lambda array: moved(array, 8 * int(rng.integers(0, 8))))
+        copy = changed(toolpath, lambda array: copy_at_offset(array, 8 * int(rng.integers(0, 8))))
         assert bytes_of(motion_of(copy, degree)[1]) == bytes_of(
             motion_of(changed(toolpath, np.copy), degree)[1]
         )
-        assert bytes_of(motion_of(toolpath, degree)[1]) == wanted
+        assert bytes_of(motion_of(toolpath, degree)[1]) == expected
 
 
 @pytest.mark.parametrize("lean", [0.3, 0.9])
 def test_the_last_bits_decide_nothing(lean):
+    """The last bits of the input do not affect the result."""
     rng = np.random.default_rng(11)
     path, motion = motion_of(wall(lean))
     for _ in range(3):
         noisy = changed(
             wall(lean), lambda array: array * (1.0 + 1e-15 * rng.uniform(-1, 1, array.shape))
         )
-        other, shifted = motion_of(noisy)
-        assert other.branch == path.branch and len(shifted) == len(motion)
+        noisy_path, shifted = motion_of(noisy)
+        assert noisy_path.branch == path.branch and len(shifted) == len(motion)
         assert np.abs(np.nan_to_num(shifted.joints - motion.joints)).max() < 1e-6
         assert (np.isnan(shifted.joints) == np.isnan(motion.joints)).all()
 
 
 def test_functions_worked_out_in_two_ways_are_given_arrays_in_one_piece(monkeypatch):
-    """A column of a table ends past the table: with the result just behind it, numpy takes the other way."""
+    """A column of a table extends beyond the table: with the result just behind it, numpy takes the
+    other code path."""
     strided = []
 
     def watched(function):
-        def call(*args, **more):
+        def call(*args, **options):
             for array in args:
                 strides, shape = np.asarray(array).strides, np.shape(array)
                 steps = [
@@ -122,7 +126,7 @@ def test_functions_worked_out_in_two_ways_are_given_arrays_in_one_piece(monkeypa
                 ]
                 if steps and min(steps) > np.asarray(array).itemsize:
                     strided.append(function.__name__)
-            return function(*args, **more)
+            return function(*args, **options)
 
         return call
 
@@ -136,6 +140,7 @@ def test_functions_worked_out_in_two_ways_are_given_arrays_in_one_piece(monkeypa
 
 
 def test_of_two_ways_round_alike_the_first_is_taken():
+    """Of two equivalent directions the first is taken."""
     rng = np.random.default_rng(3)
     ring = np.array([[0.0, 0.0], [0.1, 0.0], [0.0, 0.1], [-0.1, 0.0], [0.0, -0.1]])
     allowed = np.ones((1, 30, 5), dtype=bool)
@@ -143,7 +148,7 @@ def test_of_two_ways_round_alike_the_first_is_taken():
     weight, change = np.ones((1, 30)), np.full((1, 29), 3.0)
     for _ in range(20):
         states = (ring * (1.0 + 1e-15 * rng.uniform(-1, 1, ring.shape)))[None, None]
-        chosen = least_cost_states(np.broadcast_to(states, (1, 1, 5, 2)), allowed, weight, change)[
-            0
-        ]
-        assert set(chosen[10:20]) == {1} and set(chosen[:5]) == {0}
+        states_chosen = least_cost_states(
+            np.broadcast_to(states, (1, 1, 5, 2)), allowed, weight, change
+        )[0]
+        assert set(states_chosen[10:20]) == {1} and set(states_chosen[:5]) == {0}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads of few points, whose rotation may make whole turns between two of them, as they are run."""
+"""Beads of few points, whose rotation could make whole turns between two of them, as executed."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ TURN, UP = 2.0 * np.pi, np.array([0.0, 0.0, 1.0])
 
 
 def straight(start, end, count):
-    """A bead of `count` points on a line, the tool upright."""
+    """A bead of `count` points on a line, with an upright tool."""
     share = np.linspace(0.0, 1.0, count)
     points = start + share[:, None] * (end - start)
     up = np.tile(UP, (count, 1))
@@ -24,6 +24,7 @@ def straight(start, end, count):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_points_that_are_added_lie_between_their_neighbours(seed):
+    """Added points are between their neighbours in rotation."""
     draw = np.random.default_rng(seed)
     beads = []
     for layer in range(3):
@@ -36,18 +37,21 @@ def test_points_that_are_added_lie_between_their_neighbours(seed):
         setup="tool-on-robot", deposition_point=(900.0, 0.0, 100.0, 0.0, 0.0, 0.0)
     )
     cell = cells.resolve(parameters, toolpath.frame, toolpath.family)
-    found = plan_joints(toolpath, cell, JointParameters())
-    assert found.feasible, found.issues
+    joint_path = plan_joints(toolpath, cell, JointParameters())
+    assert joint_path.feasible, joint_path.issues
     arm, added = kdl.KdlArm(cell.machine), 0
-    for path, bead in zip(found.beads, beads):
+    for path, bead in zip(joint_path.beads, beads):
         flange = arm.forward(path.joints)
         added += len(flange) - len(bead)
-        # the frame about the tool axis, from point to point: the whole way is no longer than the way from end to end
+        # the frame about the tool axis from point to point: the sum of rotations is no larger than
+        # the rotation from end to end
         step = np.einsum("nji,njk->nik", flange[:-1, :3, :3], flange[1:, :3, :3])
         turned = np.arccos(np.clip(0.5 * (np.trace(step, axis1=1, axis2=2) - 1.0), -1.0, 1.0))
-        at = np.linalg.norm(path.bead.points[:, None] - bead.points, axis=2).argmin(axis=0)
-        for a, b in zip(at[:-1], at[1:]):
-            whole = flange[a, :3, :3].T @ flange[b, :3, :3]
-            asked = np.arccos(np.clip(0.5 * (np.trace(whole) - 1.0), -1.0, 1.0))
-            assert turned[a:b].sum() <= asked + 1e-3
+        point_indices = np.linalg.norm(path.bead.points[:, None] - bead.points, axis=2).argmin(
+            axis=0
+        )
+        for a, b in zip(point_indices[:-1], point_indices[1:]):
+            total_rotation = flange[a, :3, :3].T @ flange[b, :3, :3]
+            total_angle = np.arccos(np.clip(0.5 * (np.trace(total_rotation) - 1.0), -1.0, 1.0))
+            assert turned[a:b].sum() <= total_angle + 1e-3
     assert added > len(beads)

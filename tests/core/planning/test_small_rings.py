@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where a wall closes, and where open beads end half a turn from the next start: both must come out as programs."""
+"""Where a wall closes, and where open beads end half a turn before the next start: both must give
+programs."""
 
 import numpy as np
 import pytest
@@ -48,7 +49,8 @@ def axis_speeds(motion):
 
 
 def test_the_last_ring_of_a_dome_is_run_at_the_speed_the_axes_allow(cell_of):
-    """A hemisphere of 30 mm leaves a ring of 0.12 mm radius: at 6 mm/s axis 6 would turn 8 times a second."""
+    """A hemisphere of 30 mm leaves a ring of 0.12 mm radius: at 6 mm/s axis 6 would rotate 8 times
+    a second."""
     toolpath = toolpath_of(30.0, 1.0)
     cell = cell_of(toolpath)
     planned = plan_joints(toolpath, cell, JointParameters())
@@ -78,7 +80,7 @@ def test_a_ring_wider_than_a_layer_is_not_slowed_but_refused(cell_of):
 
 @pytest.mark.parametrize("lift", [0.0, 20.0])
 def test_half_a_turn_back_to_the_next_start_is_made_in_several_moves(cell_of, lift):
-    """An endless axis takes the shorter way, and of half a turn nobody knows which that is."""
+    """A continuous axis takes the shorter direction, which is ambiguous for half a turn."""
     process = ProcessParameters(between_layers=BetweenLayersParameters(lift=lift))
     toolpath = toolpath_of(45.0, 10.0, top=1.2, end=np.pi, process=process)
     cell = cell_of(toolpath)
@@ -89,8 +91,8 @@ def test_half_a_turn_back_to_the_next_start_is_made_in_several_moves(cell_of, li
     turn = np.abs(np.diff(motion.joints, axis=0))
     assert turn[:, 5].max() < np.radians(170.001)
     ends = [
-        (before.joints[-1, 5], after.joints[0, 5])
-        for before, after in zip(planned.beads, planned.beads[1:])
+        (current.joints[-1, 5], following.joints[0, 5])
+        for current, following in zip(planned.beads, planned.beads[1:])
     ]
     assert max(abs(end - start) for end, start in ends) > np.radians(175.0)
     tip, axis = cell.tip_in_part(cell.machine.chain.forward(motion.joints))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads that are not circles, degrees 0 to 6: seeded random curves in space, closed and open, checked by other means."""
+"""Beads that are not circles, degrees 0 to 6: seeded random curves in space, closed and open,
+checked independently."""
 
 import dataclasses
 
@@ -24,7 +25,8 @@ SEEDS = (1, 2, pytest.param(3, marks=pytest.mark.long))
 
 
 def curve(seed, closed, count):
-    """Points and tool axes of a random smooth curve above the platform, at any number of points."""
+    """Points and tool axes of a random smooth curve above the platform, for any number of
+    points."""
     rng = np.random.default_rng(seed)
     wave, tilt, phase = rng.normal(size=(3, 4)), rng.normal(size=(2, 3)), rng.uniform(0, TURN)
     s = np.linspace(0.0, 1.0, count)
@@ -43,7 +45,8 @@ def curve(seed, closed, count):
 
 
 def bead_of(seed, closed, count=POINTS, finer=1):
-    """A bead; the parameter of a `finer` one is that of the coarse one's points, so that one polynomial serves both."""
+    """A bead; a `finer` one has the parameter of the coarse one's points, so that one polynomial
+    serves both."""
     dense, tool = curve(seed, closed, (count - 1) * finer + 1)
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(dense[::finer], axis=0), axis=1))]
     parameter = np.interp(
@@ -61,16 +64,16 @@ def cell():
 
 @pytest.fixture(scope="module")
 def optima(cell):
-    """optima(seed, closed, degree) -> points of one bead, its thresholds, and what was found on them."""
-    made = {}
+    """optima(seed, closed, degree) -> the planned joint path of one bead."""
+    paths = {}
 
     def find(seed, closed, degree):
         key = (seed, closed, degree)
-        if key not in made:
+        if key not in paths:
             bead = bead_of(seed, closed)
             path = Toolpath((Layer((bead,)),), np.eye(4), 5.0, 1.0, family="surface")
-            made[key] = plan_joints(path, cell, JointParameters(degree=degree))
-        return made[key]
+            paths[key] = plan_joints(path, cell, JointParameters(degree=degree))
+        return paths[key]
 
     return find
 
@@ -79,9 +82,9 @@ def optima(cell):
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.always("1-closed", "1-open")
 def test_a_higher_degree_is_never_worse(optima, seed, closed):
-    found = [optima(seed, closed, degree) for degree in range(7)]
-    assert all(path.feasible for path in found), [path.issues for path in found]
-    worth = np.array([path.beads[0].objective for path in found])
+    paths = [optima(seed, closed, degree) for degree in range(7)]
+    assert all(path.feasible for path in paths), [path.issues for path in paths]
+    worth = np.array([path.beads[0].objective for path in paths])
     assert (worth[1:] <= worth[:-1] * (1.0 + 1e-4)).all(), worth
     assert worth[6] < 0.98 * worth[0]
 
@@ -89,14 +92,15 @@ def test_a_higher_degree_is_never_worse(optima, seed, closed):
 @pytest.mark.parametrize("degree", [1, 2, 3, 4, 5, 6])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_closed_bead_joins_up(optima, seed, degree):
+    """The rotation of a closed bead is continuous modulo whole turns."""
     path = optima(seed, True, degree).beads[0]
     assert np.polynomial.Polynomial(path.coefficients)(path.bead.parameter) == pytest.approx(
         path.phi, abs=1e-9
     )
     turns = (path.phi[-1] - path.phi[0]) / TURN
     assert abs(turns - np.round(turns)) < 1e-9
-    apart = (path.joints[-1] - path.joints[0]) / TURN
-    assert np.abs(apart - np.round(apart)).max() < 1e-9
+    differences = (path.joints[-1] - path.joints[0]) / TURN
+    assert np.abs(differences - np.round(differences)).max() < 1e-9
 
 
 @pytest.mark.parametrize("closed", [True, False], ids=["closed", "open"])
@@ -118,7 +122,8 @@ def test_limits_and_condition_hold_on_a_finer_grid(cell, optima, seed, closed):
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.always
 def test_a_second_solver_is_not_better_by_more_than_two_percent(cell, optima, seed, closed):
-    """Without our gradients and our search: scipy's SLSQP by differences, from random polynomials that join up."""
+    """Without our gradients and our search: scipy's SLSQP by differences, from random polynomials
+    that close."""
     degree = 3
     path = optima(seed, closed, degree).beads[0]
     task = Task(cell, FLIP, JointParameters(degree=degree), True)
@@ -127,7 +132,8 @@ def test_a_second_solver_is_not_better_by_more_than_two_percent(cell, optima, se
     x = points.parameter / np.pi - 1.0
 
     def coefficients(free, turns):
-        # a polynomial of x in -1 .. 1 with equal ends but for whole turns, written down without our basis
+        # a polynomial of x in -1 .. 1 with equal ends except for whole turns, written without our
+        # basis
         a, b, c, d = free
         values = a + c * (x * x - 1.0) + d * (x**3 - x) + (np.pi * turns * x if closed else b * x)
         return (
@@ -137,8 +143,8 @@ def test_a_second_solver_is_not_better_by_more_than_two_percent(cell, optima, se
         )
 
     def objective(free, turns):
-        found = global_search.judge(task, points, threshold, coefficients(free, turns))
-        return float(np.nan_to_num(found.objective[0, 0], posinf=1e3))
+        judged = global_search.judge(task, points, threshold, coefficients(free, turns))
+        return float(np.nan_to_num(judged.objective[0, 0], posinf=1e3))
 
     def margin(free, turns):
         return float(
@@ -169,16 +175,20 @@ def test_a_second_solver_is_not_better_by_more_than_two_percent(cell, optima, se
 
 
 def test_beads_of_revolution_need_not_join(cell):
-    """Nothing but the family tells: the same bead as a layer of a part of revolution may end at another rotation."""
+    """Only the family differs: the same bead as a layer of a part of revolution may end at a
+    different rotation."""
     bead = bead_of(1, True)
     free = Toolpath((Layer((bead,)),), np.eye(4), 5.0, 1.0)
     joined = dataclasses.replace(free, family="surface")
-    apart, held = (plan_joints(path, cell, JointParameters()).beads[0] for path in (free, joined))
-    assert apart.objective <= held.objective * (1.0 + 1e-6)
-    assert abs(np.sin(0.5 * (held.phi[-1] - held.phi[0]))) < 1e-9
+    open_path, closed_path = (
+        plan_joints(path, cell, JointParameters()).beads[0] for path in (free, joined)
+    )
+    assert open_path.objective <= closed_path.objective * (1.0 + 1e-6)
+    assert abs(np.sin(0.5 * (closed_path.phi[-1] - closed_path.phi[0]))) < 1e-9
 
 
 def test_gradients_along_what_may_change(cell):
+    """Directions of allowed changes keep closed beads closed."""
     task = Task(cell, FLIP, JointParameters(degree=5), True)
     points = gather([bead_of(1, True), bead_of(2, False)], cell)
     directions = local_optimisation.refine_state.changes(task, points, 5)
@@ -190,5 +200,5 @@ def test_gradients_along_what_may_change(cell):
             np.vander([low[bead], high[bead]], 6, increasing=True) @ column
             for column in directions[bead].T
         ]
-        apart = [abs(value[1] - value[0]) for value in values]
-        assert bead == 1 or max(apart) < 1e-9
+        end_differences = [abs(value[1] - value[0]) for value in values]
+        assert bead == 1 or max(end_differences) < 1e-9

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Five-axis machines: beads held at the torch between their points too, poles passed, limits kept, speeds as asked."""
+"""Five-axis machines: beads held at the torch between their points too, poles passed, limits kept,
+speeds as requested."""
 
 import dataclasses
 import math
@@ -36,19 +37,23 @@ def bead(points, build, closed=False, speed=8.0):
 
 def toolpath(*beads, chord_error=0.02):
     return Toolpath(
-        tuple(Layer((one,)) for one in beads), np.eye(4), 2.0, chord_error, family="developable"
+        tuple(Layer((layer_bead,)) for layer_bead in beads),
+        np.eye(4),
+        2.0,
+        chord_error,
+        family="developable",
     )
 
 
-def resolved(machine="table-xyzac", platform=(0.0, 0.0, 30.0, 0.0, 0.0, 0.0), **more):
+def resolved(machine="table-xyzac", platform=(0.0, 0.0, 30.0, 0.0, 0.0, 0.0), **options):
     parameters = CellParameters(
-        machine=machine, setup="rotary-table", platform=platform, mount="part", **more
+        machine=machine, setup="rotary-table", platform=platform, mount="part", **options
     )
     return cells.resolve(parameters, np.eye(4), "developable")
 
 
-def around(base, distance, z, n=181, start=0.0):
-    """A closed bead all round a hub whose axis is the table's."""
+def ring_around(base, distance, z, n=181, start=0.0):
+    """A closed bead around a hub whose axis is the table's."""
     theta = start + np.linspace(0.0, 2.0 * math.pi, n)
     surface = base.offset(distance)
     rho = surface.radius * (1.0 - z / surface.height)
@@ -58,29 +63,38 @@ def around(base, distance, z, n=181, start=0.0):
 
 
 def check(cell, path, chord_error=0.02):
-    """Every place between two points, driven through PyKDL: on the bead, and held as the bead says."""
+    """Every position between two points, driven by PyKDL, is on the bead and has its tool
+    direction."""
     forward = (KdlArm(cell.machine) if available() else cell.machine.chain).forward
-    for one in path.beads:
+    for bead_path in path.beads:
         share = np.linspace(0.0, 1.0, 12)[:, None]
-        axes = (one.joints[:-1, None] + share * np.diff(one.joints, axis=0)[:, None]).reshape(-1, 5)
+        axes = (
+            bead_path.joints[:-1, None] + share * np.diff(bead_path.joints, axis=0)[:, None]
+        ).reshape(-1, 5)
         tip, tool = cell.tip_in_part(forward(axes))
-        start, way = one.bead.points[:-1], np.diff(one.bead.points, axis=0)
-        tip = tip.reshape(len(way), 12, 3)
+        start, segments = bead_path.bead.points[:-1], np.diff(bead_path.bead.points, axis=0)
+        tip = tip.reshape(len(segments), 12, 3)
         t = np.clip(
-            ((tip - start[:, None]) * way[:, None]).sum(-1) / (way**2).sum(-1)[:, None], 0.0, 1.0
+            ((tip - start[:, None]) * segments[:, None]).sum(-1) / (segments**2).sum(-1)[:, None],
+            0.0,
+            1.0,
         )
         assert (
-            np.linalg.norm(tip - start[:, None] - t[..., None] * way[:, None], axis=-1).max()
+            np.linalg.norm(tip - start[:, None] - t[..., None] * segments[:, None], axis=-1).max()
             < 1.05 * chord_error
         )
-        at_points = cell.tip_in_part(forward(one.joints))
-        np.testing.assert_allclose(at_points[0], one.bead.points, atol=1e-8)
-        np.testing.assert_allclose(at_points[1], one.bead.tool, atol=1e-10)
-        between = tool.reshape(len(way), 12, 3)
-        straight = one.bead.tool[:-1, None] + share * np.diff(one.bead.tool, axis=0)[:, None]
+        at_points = cell.tip_in_part(forward(bead_path.joints))
+        np.testing.assert_allclose(at_points[0], bead_path.bead.points, atol=1e-8)
+        np.testing.assert_allclose(at_points[1], bead_path.bead.tool, atol=1e-10)
+        between = tool.reshape(len(segments), 12, 3)
+        straight = (
+            bead_path.bead.tool[:-1, None] + share * np.diff(bead_path.bead.tool, axis=0)[:, None]
+        )
         straight /= np.linalg.norm(straight, axis=-1)[..., None]
         assert np.degrees(np.arccos(np.clip((between * straight).sum(-1), -1, 1))).max() < 0.55
-        assert (one.joints >= cell.limits.lower).all() and (one.joints <= cell.limits.upper).all()
+        assert (bead_path.joints >= cell.limits.lower).all() and (
+            bead_path.joints <= cell.limits.upper
+        ).all()
 
 
 def test_free_is_what_a_machine_has_beyond_five_axes():
@@ -112,7 +126,7 @@ def test_random_beads_anywhere(machine):
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("off", [0.0, 1e-7, 0.3])
 def test_over_the_vertical(machine, off):
-    # a bead over the top of a ball: straight through the pole, a hair beside it, and near it
+    # a bead over the top of a ball: exactly through the pole, very close to it, and near it
     angle = np.linspace(-0.8, 0.8, 81)
     points = 50.0 * np.stack(
         [np.sin(angle) * np.cos(0.4), np.sin(angle) * np.sin(0.4), np.cos(angle)], axis=1
@@ -122,14 +136,14 @@ def test_over_the_vertical(machine, off):
     path = plan_joints(toolpath(bead(points, points)), cell, JointParameters())
     if (
         off == 0.3
-    ):  # so near the axis has to turn half round in a moment: told, with the speed that would do
+    ):  # so close to the pole the axis must rotate by half a turn in a moment: reported with a feasible speed
         assert [issue.code for issue in path.issues] == ["SPEED"]
         check(cell, path)
         return
     assert path.feasible, [issue.message for issue in path.issues]
     check(cell, path)
     assert np.abs(np.diff(path.beads[0].joints, axis=0)[:, cell.machine.chain.sliding]).max() < 12.0
-    if off < 0.1:  # the tilt goes on to the other side, the table does not turn
+    if off < 0.1:  # the tilt continues to the other side, and the table does not rotate
         turning = path.beads[0].joints[:, ~cell.machine.chain.sliding]
         assert np.ptp(turning, axis=0).min() < 1e-5 and np.ptp(
             turning, axis=0
@@ -139,8 +153,9 @@ def test_over_the_vertical(machine, off):
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("way", ["nearly upright", "over level ground"])
 def test_beside_the_vertical_the_table_has_the_way_there_to_turn(machine, way):
-    """Curved layers are upright but for some tenths of a degree, this way and that, or lean, are upright for a while and
-    lean another way: the table would have turned within hundredths of a millimetre, or nowhere."""
+    """Curved layers are upright except for some tenths of a degree either way, or lean, are upright
+    for a while and lean in a different direction: the table would have rotated within hundredths of
+    a millimetre, or nowhere."""
     x = np.linspace(0.0, 60.0, 61)
     lean, aside = np.zeros((2, len(x)))
     if way == "nearly upright":
@@ -149,19 +164,21 @@ def test_beside_the_vertical_the_table_has_the_way_there_to_turn(machine, way):
         lean = np.tan(np.radians(np.interp(x, [20.0, 25.0], [15.0, 0.0])))
         aside = np.tan(np.radians(np.interp(x, [35.0, 40.0], [0.0, 15.0])))
     cell = resolved(machine)
-    asked = bead(
+    requested = bead(
         np.stack([x, 5.0 + 0.0 * x, 20.0 + 0.0 * x], axis=1),
         np.stack([lean, aside, np.ones(len(x))], axis=1),
     )
-    path = plan_joints(toolpath(asked), cell, JointParameters())
+    path = plan_joints(toolpath(requested), cell, JointParameters())
     assert path.feasible, [issue.message for issue in path.issues]
     assert [issue.code for issue in path.issues] == []
     check(cell, path)
     run = path.beads[0]
-    found = np.stack(
-        [np.interp(run.bead.points[:, 0], x, column) for column in asked.tool.T], axis=1
+    directions = np.stack(
+        [np.interp(run.bead.points[:, 0], x, column) for column in requested.tool.T], axis=1
     )
-    sine = np.linalg.norm(np.cross(found, run.bead.tool), axis=1) / np.linalg.norm(found, axis=1)
+    sine = np.linalg.norm(np.cross(directions, run.bead.tool), axis=1) / np.linalg.norm(
+        directions, axis=1
+    )
     assert np.degrees(np.arcsin(sine)).max() < 0.41
     turning = ~cell.machine.chain.sliding
     rate = (
@@ -173,45 +190,47 @@ def test_beside_the_vertical_the_table_has_the_way_there_to_turn(machine, way):
 
 
 def test_a_tilting_axis_without_room_beyond_the_pole_stays_on_its_side():
-    """Straight on through the vertical it would come to -15 deg; the table turns beside it then, and the bead is slowed."""
+    """Straight through the vertical the axis would reach -15 deg; the table rotates next to the
+    pole instead, and the bead is slowed."""
     x = np.linspace(0.0, 60.0, 61)
     lean, aside = (
         np.tan(np.radians(15.0 * (1.0 - x / 30.0))),
         np.full(len(x), np.tan(np.radians(0.15))),
     )
-    asked = bead(
+    requested = bead(
         np.stack([x, 5.0 + 0.0 * x, 20.0 + 0.0 * x], axis=1),
         np.stack([lean, aside, np.ones(len(x))], axis=1),
         speed=2.5,
     )
-    cell = with_limits(resolved("table-xyzac"), 3, -5.0, 100.0)
-    path = plan_joints(toolpath(asked), cell, JointParameters())
+    cell = limit_axis(resolved("table-xyzac"), 3, -5.0, 100.0)
+    path = plan_joints(toolpath(requested), cell, JointParameters())
     assert path.feasible and len(path.beads) == 1
     assert [issue.code for issue in path.issues] == ["SLOWED"]
     check(cell, path)
-    free = plan_joints(toolpath(asked), resolved("table-xyzac"), JointParameters())
+    free = plan_joints(toolpath(requested), resolved("table-xyzac"), JointParameters())
     assert (
         free.feasible and not free.issues and np.degrees(free.beads[0].joints[:, 3].min()) < -10.0
     )
 
 
 def test_round_a_hub_on_the_turning_axis_only_the_table_turns():
+    """Around a hub on the rotary axis only the table rotates."""
     base = Developable(60.0, 200.0)
     cell = resolved()
-    beads = [around(base, 3.0 * k, 40.0, start=0.3 * k) for k in range(4)]
+    beads = [ring_around(base, 3.0 * k, 40.0, start=0.3 * k) for k in range(4)]
     path = plan_joints(toolpath(*beads, chord_error=0.02), cell, JointParameters())
     assert path.feasible
-    for one in path.beads:
-        np.testing.assert_allclose(np.ptp(one.joints, axis=0)[:4], 0.0, atol=1e-8)
-        assert np.ptp(one.joints[:, 4]) == pytest.approx(2.0 * math.pi, abs=1e-9)
+    for bead_path in path.beads:
+        np.testing.assert_allclose(np.ptp(bead_path.joints, axis=0)[:4], 0.0, atol=1e-8)
+        assert np.ptp(bead_path.joints[:, 4]) == pytest.approx(2.0 * math.pi, abs=1e-9)
     assert np.degrees(abs(path.beads[0].joints[0, 3])) == pytest.approx(73.3, abs=0.01)
     motion, issues = assemble(path, cell, ProcessParameters(travel_speed=8.0))
     assert not [issue for issue in issues if issue.level == "error"]
-    # the linear axes stand still, the torch still runs at its speed along the bead
+    # the linear axes are at rest, but the torch has its speed along the bead
     rows = motion.deposit & (motion.point > 0)
     length = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
     np.testing.assert_allclose(length[rows] / motion.duration[rows], 8.0, rtol=1e-12)
-    # and between beads it is withdrawn without a turn, so it meets nothing
+    # and between beads it retracts without a rotation, so it touches nothing
     joined = np.diff(motion.joints[:, 4])
     assert np.abs(joined).max() < math.pi
 
@@ -232,7 +251,7 @@ def test_a_limited_axis_unwinds_between_beads():
     )
     cell = dataclasses.replace(cell, limits=limited)
     path = plan_joints(
-        toolpath(*(around(base, 3.0, 5.0 * k) for k in range(5))), cell, JointParameters()
+        toolpath(*(ring_around(base, 3.0, 5.0 * k) for k in range(5))), cell, JointParameters()
     )
     assert path.feasible, [issue.message for issue in path.issues]
     check(cell, path)
@@ -245,9 +264,9 @@ def test_a_limited_axis_unwinds_between_beads():
     ]
 
 
-def with_limits(cell, axis, low, high):
+def limit_axis(cell, axis, lower_deg, upper_deg):
     lower, upper = cell.limits.lower.copy(), cell.limits.upper.copy()
-    lower[axis], upper[axis] = math.radians(low), math.radians(high)
+    lower[axis], upper[axis] = math.radians(lower_deg), math.radians(upper_deg)
     return dataclasses.replace(
         cell, limits=dataclasses.replace(cell.limits, lower=lower, upper=upper)
     )
@@ -255,40 +274,46 @@ def with_limits(cell, axis, low, high):
 
 @pytest.mark.parametrize("overlap", [0.0, 8.0])
 def test_seams_are_moved_where_a_limited_axis_has_room(overlap):
-    # 400 deg of stroke: a whole turn fits from 40 deg of starts alone, and the seams are all round
-    cell = with_limits(resolved(), 4, -200.0, 200.0)
-    beads = [around(Developable(60.0, 200.0), 2.0 * k, 40.0, start=1.1 * k) for k in range(6)]
+    # 400 deg of range: a whole turn fits from starts within 40 deg only, and the seams are all
+    # around
+    cell = limit_axis(resolved(), 4, -200.0, 200.0)
+    beads = [ring_around(Developable(60.0, 200.0), 2.0 * k, 40.0, start=1.1 * k) for k in range(6)]
     planned = dataclasses.replace(toolpath(*beads), rules=MotionRules(overlap=overlap))
     path = plan_joints(planned, cell, JointParameters())
     assert path.feasible, [issue.message for issue in path.issues]
     assert "SEAM_MOVED" in {issue.code for issue in path.issues} and len(path.beads) == len(beads)
-    for one, asked in zip(path.beads, beads):
-        assert np.degrees(np.ptp(one.joints[:, 4])) == pytest.approx(
+    for bead_path, requested in zip(path.beads, beads):
+        assert np.degrees(np.ptp(bead_path.joints[:, 4])) == pytest.approx(
             360.0 + math.degrees(overlap / 57.0), abs=3.0 + overlap
         )
-        # the same ring, begun elsewhere
-        assert one.bead.length == pytest.approx(asked.length + overlap, abs=0.03)
-        np.testing.assert_allclose(one.bead.points[:, 2], 40.0, atol=1e-9)
+        # the same ring with another start
+        assert bead_path.bead.length == pytest.approx(requested.length + overlap, abs=0.03)
+        np.testing.assert_allclose(bead_path.bead.points[:, 2], 40.0, atol=1e-9)
         assert (
-            np.degrees(one.joints[:, 4].min()) >= -200.0
-            and np.degrees(one.joints[:, 4].max()) <= 200.0
+            np.degrees(bead_path.joints[:, 4].min()) >= -200.0
+            and np.degrees(bead_path.joints[:, 4].max()) <= 200.0
         )
     check(cell, path)
 
 
 def test_beads_are_split_where_no_seam_helps():
-    cell = with_limits(resolved(), 4, -150.0, 150.0)
-    beads = [around(Developable(60.0, 200.0), 2.0 * k, 40.0, start=0.4 * k) for k in range(3)]
+    """Beads are split where no seam helps."""
+    cell = limit_axis(resolved(), 4, -150.0, 150.0)
+    beads = [ring_around(Developable(60.0, 200.0), 2.0 * k, 40.0, start=0.4 * k) for k in range(3)]
     path = plan_joints(toolpath(*beads), cell, JointParameters())
     assert path.feasible, [issue.message for issue in path.issues]
     assert "BEAD_SPLIT" in {issue.code for issue in path.issues}
-    assert [(one.layer, one.index) for one in path.beads] == [
-        (k, piece) for k in range(3) for piece in range(2)
+    assert [(bead_path.layer, bead_path.index) for bead_path in path.beads] == [
+        (k, half_index) for k in range(3) for half_index in range(2)
     ]
-    for k, asked in enumerate(beads):
-        first, second = path.beads[2 * k : 2 * k + 2]
-        np.testing.assert_allclose(first.bead.points[-1], second.bead.points[0], atol=1e-12)
-        assert first.bead.length + second.bead.length == pytest.approx(asked.length, abs=0.02)
+    for k, requested in enumerate(beads):
+        first_half, second_half = path.beads[2 * k : 2 * k + 2]
+        np.testing.assert_allclose(
+            first_half.bead.points[-1], second_half.bead.points[0], atol=1e-12
+        )
+        assert first_half.bead.length + second_half.bead.length == pytest.approx(
+            requested.length, abs=0.02
+        )
     check(cell, path)
     motion, issues = assemble(path, cell, ProcessParameters())
     assert not issues and motion.reachable.all()
@@ -298,7 +323,9 @@ def test_robots_lock_no_axis():
     cell = cells.resolve(CellParameters(), np.eye(4))
     with pytest.raises(InputError) as caught:
         plan_joints(
-            toolpath(around(Developable(60.0), 0.0, 40.0)), cell, JointParameters(lock="second")
+            toolpath(ring_around(Developable(60.0), 0.0, 40.0)),
+            cell,
+            JointParameters(lock="second"),
         )
     assert caught.value.code == "NOT_FOR_SETUP" and caught.value.where == "joints.lock"
 
@@ -307,8 +334,8 @@ def test_a_limit_that_cannot_be_kept_is_told_with_axis_and_place():
     base = Developable(60.0, 200.0)
     cell = resolved(
         platform=(450.0, 0.0, 30.0, 0.0, 0.0, 0.0)
-    )  # far off the table's axis: it swings out of the stroke
-    path = plan_joints(toolpath(around(base, 0.0, 40.0)), cell, JointParameters())
+    )  # far off the table's axis: it leaves the range
+    path = plan_joints(toolpath(ring_around(base, 0.0, 40.0)), cell, JointParameters())
     assert not path.feasible
     limit = next(issue for issue in path.issues if issue.code == "LIMIT")
     assert (
@@ -322,7 +349,7 @@ def test_a_limit_that_cannot_be_kept_is_told_with_axis_and_place():
 def test_four_axes(lock_at):
     base = Developable(60.0, 200.0)
     cell = resolved()
-    beads = [around(base, 3.0 * k, 40.0) for k in range(2)]
+    beads = [ring_around(base, 3.0 * k, 40.0) for k in range(2)]
     path = plan_joints(toolpath(*beads), cell, JointParameters(lock="first", lock_at=lock_at))
     assert path.feasible
     note = next(issue for issue in path.issues if issue.code == "FOUR_AXES")
@@ -339,14 +366,14 @@ def test_four_axes(lock_at):
         assert np.degrees(missed).max() < 0.02
     else:
         assert "13.3 deg off" in note.message
-    # what is told and verified is how the tool really stands
+    # the message and the verification state the real tool direction
     tip, tool = cell.tip_in_part(cell.machine.chain.forward(path.beads[1].joints))
     np.testing.assert_allclose(tool, path.beads[1].bead.tool, atol=1e-12)
     np.testing.assert_allclose(tip, path.beads[1].bead.points, atol=1e-9)
 
 
 def test_four_axes_that_miss_too_much_are_refused():
-    cell, beads = resolved(), [around(Developable(60.0, 200.0), 0.0, 40.0)]
+    cell, beads = resolved(), [ring_around(Developable(60.0, 200.0), 0.0, 40.0)]
     parameters = JointParameters(
         lock="first", lock_at=math.radians(60.0), max_residual=math.radians(13.0)
     )
@@ -356,25 +383,30 @@ def test_four_axes_that_miss_too_much_are_refused():
 
 
 def test_a_cone_and_a_cylinder_on_one_spindle_share_what_is_missed():
-    # the tilt that suits both leaves each half of the angle between them
+    # the best common tilt leaves each half of the angle between them
     cell = resolved()
-    beads = [around(Developable(60.0, 200.0), 2.0, 40.0), around(Developable(60.0), 2.0, -20.0)]
+    beads = [
+        ring_around(Developable(60.0, 200.0), 2.0, 40.0),
+        ring_around(Developable(60.0), 2.0, -20.0),
+    ]
     path = plan_joints(toolpath(*beads), cell, JointParameters(lock="first"))
     assert path.feasible
     half = math.degrees(math.atan2(60.0, 200.0)) / 2.0
-    told = next(issue for issue in path.issues if issue.code == "FOUR_AXES").message
-    assert f"{half:.3g} deg off" in told
-    for one, build in zip(path.beads, beads):
-        missed = np.arccos(np.clip((one.bead.tool * one.bead.build).sum(axis=1), -1, 1))
+    note = next(issue for issue in path.issues if issue.code == "FOUR_AXES").message
+    assert f"{half:.3g} deg off" in note
+    for bead_path, build in zip(path.beads, beads):
+        missed = np.arccos(np.clip((bead_path.bead.tool * bead_path.bead.build).sum(axis=1), -1, 1))
         np.testing.assert_allclose(np.degrees(missed), half, atol=0.01)
-        assert len(one.bead) >= len(build)
+        assert len(bead_path.bead) >= len(build)
 
 
 def test_the_locked_axis_stands_within_its_limits():
     cell = resolved()
-    cell = with_limits(cell, 3, -40.0, 50.0)
+    cell = limit_axis(cell, 3, -40.0, 50.0)
     path = plan_joints(
-        toolpath(around(Developable(60.0, 200.0), 0.0, 40.0)), cell, JointParameters(lock="first")
+        toolpath(ring_around(Developable(60.0, 200.0), 0.0, 40.0)),
+        cell,
+        JointParameters(lock="first"),
     )
     assert path.feasible and math.degrees(path.beads[0].joints[0, 3]) == pytest.approx(
         49.95, abs=0.01
@@ -401,11 +433,12 @@ def test_a_robot_is_no_table_and_a_table_no_robot():
 
 
 def test_an_overlap_runs_on():
+    """An overlap extends a closed bead."""
     cell = resolved()
-    one = around(Developable(60.0), 0.0, 20.0)
+    ring = ring_around(Developable(60.0), 0.0, 20.0)
     path = plan_joints(
         Toolpath(
-            (Layer((one,)),),
+            (Layer((ring,)),),
             np.eye(4),
             2.0,
             0.05,
@@ -415,5 +448,5 @@ def test_an_overlap_runs_on():
         cell,
         JointParameters(),
     )
-    assert path.beads[0].bead.length - one.length == pytest.approx(7.0, abs=0.02)
+    assert path.beads[0].bead.length - ring.length == pytest.approx(7.0, abs=0.02)
     assert np.ptp(path.beads[0].joints[:, 4]) > 2.0 * math.pi

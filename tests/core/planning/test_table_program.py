@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Programs of five-axis machines: axes by their letters, positions and directions that turn with the part, feeds."""
+"""Programs of five-axis machines: axis letters, positions and directions in the rotating part
+frame, feeds."""
 
 import math
 
@@ -23,7 +24,7 @@ PLATFORM = (10.0, -4.0, 30.0, 0.0, 0.0, 0.4)
 
 
 def spiral(distance, turn=1.2, n=120, start=0.0):
-    """An open bead that climbs round a cone, held along the cone's normal."""
+    """An open bead that climbs around a cone with the tool along the cone's normal."""
     base = Developable(60.0, 200.0).offset(distance)
     theta, z = start + np.linspace(0.0, turn, n), np.linspace(10.0, 70.0, n)
     rho = base.radius * (1.0 - z / base.height)
@@ -40,7 +41,7 @@ def planned(machine, layers=2):
     )
     cell = cells.resolve(parameters, np.eye(4), "developable")
     toolpath = Toolpath(
-        tuple(Layer((one,)) for one in beads), np.eye(4), 3.0, 0.02, family="developable"
+        tuple(Layer((bead,)) for bead in beads), np.eye(4), 3.0, 0.02, family="developable"
     )
     path = plan_joints(toolpath, cell, JointParameters())
     assert path.feasible, [issue.message for issue in path.issues]
@@ -49,12 +50,12 @@ def planned(machine, layers=2):
     return cell, motion
 
 
-def program(cell, run, **more):
+def program(cell, run, **options):
     return build(
         run,
         cell,
         ProcessParameters(travel_speed=8.0),
-        ProgramParameters(post="linuxcnc", **more),
+        ProgramParameters(post="linuxcnc", **options),
         "cone",
     )
 
@@ -74,36 +75,43 @@ def test_axes_go_by_their_letters(machine, names):
     )
     cell = cells.resolve(parameters, np.eye(4), "developable")
     _, motion = planned("table-xyzac")
-    made = build(motion, cell, ProcessParameters(), ProgramParameters(post="siemens"), "x")
-    assert sorted(made.axis_names) == sorted(set(made.axis_names)) and len(made.axis_names) == 5
-    assert [kind for name, kind in zip(made.axis_names, made.axis_kinds) if name in "XYZ"] == [
-        "linear"
-    ] * 3
-    assert [kind for name, kind in zip(made.axis_names, made.axis_kinds) if name in "ABC"] == [
-        "rotary"
-    ] * 2
+    program_ = build(motion, cell, ProcessParameters(), ProgramParameters(post="siemens"), "x")
+    assert (
+        sorted(program_.axis_names) == sorted(set(program_.axis_names))
+        and len(program_.axis_names) == 5
+    )
+    assert [
+        kind for name, kind in zip(program_.axis_names, program_.axis_kinds) if name in "XYZ"
+    ] == ["linear"] * 3
+    assert [
+        kind for name, kind in zip(program_.axis_names, program_.axis_kinds) if name in "ABC"
+    ] == ["rotary"] * 2
     if names:
-        assert "".join(made.axis_names) == names
+        assert "".join(program_.axis_names) == names
 
 
 @pytest.mark.parametrize("origin", ["auto", (5.0, 6.0, 7.0, 0.3, 0.0, -0.8)])
 def test_positions_and_directions_turn_with_the_part(origin):
+    """Positions and directions rotate with the part."""
     cell, motion = planned("table-xyzac")
-    made = program(cell, motion, motion="cartesian", origin=origin)
+    program_ = program(cell, motion, motion="cartesian", origin=origin)
     on_part = cell.poses.mount if origin == "auto" else frames.bryant(origin)
-    seen = frames.inverse(on_part)
+    part_to_origin = frames.inverse(on_part)
     rows = motion.moves
     position, direction = (
-        np.concatenate([getattr(m, name) for m in made.moves]) for name in ("position", "direction")
+        np.concatenate([getattr(m, name) for m in program_.moves])
+        for name in ("position", "direction")
     )
     np.testing.assert_allclose(
-        position, motion.position[rows] @ seen[:3, :3].T + seen[:3, 3], atol=1e-9
+        position,
+        motion.position[rows] @ part_to_origin[:3, :3].T + part_to_origin[:3, 3],
+        atol=1e-9,
     )
-    np.testing.assert_allclose(direction, motion.tool[rows] @ seen[:3, :3].T, atol=1e-12)
-    # the trunnion's own formulas, with the work offset that the program tells of
-    offset = frames.bryant(made.carried)
+    np.testing.assert_allclose(direction, motion.tool[rows] @ part_to_origin[:3, :3].T, atol=1e-12)
+    # the trunnion's own formulas, with the work offset stated by the program
+    offset = frames.bryant(program_.carried)
     x, y, z = (position @ offset[:3, :3].T + offset[:3, 3]).T
-    joints = np.concatenate([m.joints for m in made.moves])
+    joints = np.concatenate([m.joints for m in program_.moves])
     a, c = joints[:, 3], joints[:, 4]
     xr, yr = np.cos(c) * x - np.sin(c) * y, np.sin(c) * x + np.cos(c) * y
     np.testing.assert_allclose(joints[:, 0], xr, atol=1e-8)
@@ -121,19 +129,20 @@ def test_positions_and_directions_turn_with_the_part(origin):
     np.testing.assert_allclose(
         np.einsum("nij,nj->ni", turned, direction), np.tile([0.0, 0.0, 1.0], (len(a), 1)), atol=1e-9
     )
-    assert all(m.rotation is None and m.configuration is None for m in made.moves)
+    assert all(m.rotation is None and m.configuration is None for m in program_.moves)
 
 
 def test_feed_of_the_linear_axes_keeps_the_speed_at_the_bead():
+    """The feed of the linear axes keeps the speed at the bead."""
     cell, motion = planned("table-xyzac")
-    made = program(cell, motion)
-    before = made.moves[0].joints[-1]
-    run = made.moves[1]
-    feeds = slide_feeds(before, run.joints, run.duration, made.axis_kinds)
-    # driven by these feeds, looked at in small steps: the tip runs along the bead at the speed asked for
+    program_ = program(cell, motion)
+    start_joints = program_.moves[0].joints[-1]
+    run = program_.moves[1]
+    feeds = slide_feeds(start_joints, run.joints, run.duration, program_.axis_kinds)
+    # driven with these feeds in small steps: the tip moves along the bead at the requested speed
     steps = 200
     for k in range(len(feeds)):
-        start, end = (before if k == 0 else run.joints[k - 1]), run.joints[k]
+        start, end = (start_joints if k == 0 else run.joints[k - 1]), run.joints[k]
         axes = start + np.linspace(0.0, 1.0, steps + 1)[:, None] * (end - start)
         tip = cell.tip_in_part(cell.machine.chain.forward(axes))[0]
         slid = np.linalg.norm(np.diff(axes[:, :3], axis=0), axis=1).sum()
@@ -152,18 +161,21 @@ def test_where_only_the_table_turns_the_linear_axes_have_no_feed():
 
 @pytest.mark.parametrize(("between", "written"), [(0.0, [30.0, 7.5]), (10.0, [30.0, 10.0, 10.0])])
 def test_waits_of_layers_are_written(between, written):
+    """Waits between layers are written after the retract and before the next layer."""
     cell, motion = planned("table-xyzac", 4)
     process = ProcessParameters(between_layers=BetweenLayersParameters(wait=between))
-    for start, kept in (
+    for start, expected_slice in (
         (StartParameters(), slice(None)),
         (StartParameters(layer=1), slice(1, None)),
     ):
         parameters = ProgramParameters(post="linuxcnc", start_at=start)
-        made = build(motion, cell, process, parameters, "cone", (0.0, 30.0, 0.0, 7.5))
-        assert [block.seconds for block in made.blocks if isinstance(block, Wait)] == written[kept]
-        # withdrawn from the bead before, then the wait, then the next layer
-        for number, block in enumerate(made.blocks):
+        program_ = build(motion, cell, process, parameters, "cone", (0.0, 30.0, 0.0, 7.5))
+        assert [block.seconds for block in program_.blocks if isinstance(block, Wait)] == written[
+            expected_slice
+        ]
+        # the retract from the previous bead, then the wait, then the next layer
+        for number, block in enumerate(program_.blocks):
             if isinstance(block, Wait):
-                assert made.blocks[number - 1].kind == "rapid" and isinstance(
-                    made.blocks[number + 1], LayerStart
+                assert program_.blocks[number - 1].kind == "rapid" and isinstance(
+                    program_.blocks[number + 1], LayerStart
                 )

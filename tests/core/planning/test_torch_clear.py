@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A torch with a camera at its side is kept clear of what stands beside the part, by rotations about the tool. Judged by
-PyKDL's flange and by points on the triangles of the torch, at ten times as many places as there are rows."""
+"""A torch with a camera at its side keeps clear of obstacles next to the part by rotations about
+the tool. Checked by PyKDL's flange and points on the triangles of the torch, at ten times as many
+joint positions as rows."""
 
 import dataclasses
 import re
@@ -22,7 +23,7 @@ __all__ = ["dome"]  # a fixture
 
 POST = np.array([30.0, 30.0, 500.0])
 NOZZLE = dataclasses.replace(CELL["nozzle"], diameter=20.0)
-# in the file's coordinates: Z out of the nozzle
+# in file coordinates: Z out of the nozzle
 TORCH = put(
     box_at((12.0, 12.0, 85.0), 0.0, 0.0, -57.5), box_at((160.0, 30.0, 25.0), 74.0, 0.0, -87.5)
 )
@@ -30,7 +31,8 @@ TORCH = put(
 
 @pytest.fixture(scope="module")
 def beside(dome):
-    """A cell with a post that the camera meets in the plan without clearance, and that plan's motion."""
+    """A cell with a post that the camera touches in the plan without clearance, and that plan's
+    motion."""
     values = {**CELL, "branch": DOWN, "nozzle": NOZZLE}
     cell = cells.resolve(CellParameters(**values), dome.frame)
     cell = dataclasses.replace(cell, shapes=cells.CellShapes(torch=torch.torch(TORCH, NOZZLE)))
@@ -47,8 +49,8 @@ def beside(dome):
     return values, cell, pose, motion
 
 
-def carried(cell):
-    """Points on the torch beyond the nozzle, on the flange."""
+def torch_points(cell):
+    """Points on the torch above the nozzle, in flange coordinates."""
     points = samples(cell.shapes.torch.body, 3000)
     points = points[points[:, 2] > NOZZLE.length] * [1.0, -1.0, -1.0]
     return points @ cell.poses.carried[:3, :3].T + cell.poses.carried[:3, 3]
@@ -56,20 +58,21 @@ def carried(cell):
 
 def test_a_camera_keeps_clear_of_a_post(dome, beside):
     values, cell, pose, motion = beside
-    assert nearest(motion, cell, pose, carried(cell), POST).min() < CLEARANCE
-    kept = dataclasses.replace(
+    assert nearest(motion, cell, pose, torch_points(cell), POST).min() < CLEARANCE
+    cell_with_clearance = dataclasses.replace(
         cells.resolve(CellParameters(**values, arm_clearance=CLEARANCE), dome.frame),
         shapes=dataclasses.replace(cell.shapes, obstacles=(box(tuple(POST), pose, "post"),)),
     )
-    motion, issues = planned(dome, kept)
+    motion, issues = planned(dome, cell_with_clearance)
     assert not has_errors(issues), [issue for issue in issues if issue.level == "error"]
     assert (
-        nearest(motion, kept, pose, carried(kept), POST).min() > CLEARANCE - 1.0
-    )  # points of the rods' box, not all of it
+        nearest(motion, cell_with_clearance, pose, torch_points(cell_with_clearance), POST).min()
+        > CLEARANCE - 1.0
+    )  # points of the box of the capsules, not all of it
 
 
 def test_what_the_torch_cannot_get_past_is_named(dome, beside):
-    """A ring of posts about the part, closer than the camera is long."""
+    """A ring of posts around the part, closer than the camera is long."""
     values, cell, _, _ = beside
     x, y, z, *_ = CELL["deposition_point"]
     turn = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
@@ -77,15 +80,16 @@ def test_what_the_torch_cannot_get_past_is_named(dome, beside):
         [x + 150.0 * np.cos(turn), y + 150.0 * np.sin(turn), np.full(12, z - 100.0)], axis=1
     )
     ring = tuple(
-        box((60.0, 60.0, 420.0), frames.pose(np.eye(3), one), f"post {k}")
-        for k, one in enumerate(middles)
+        box((60.0, 60.0, 420.0), frames.pose(np.eye(3), position), f"post {k}")
+        for k, position in enumerate(middles)
     )
-    kept = dataclasses.replace(
+    cell_with_clearance = dataclasses.replace(
         cells.resolve(CellParameters(**values, arm_clearance=CLEARANCE), dome.frame),
         shapes=dataclasses.replace(cell.shapes, obstacles=ring),
     )
-    _, issues = planned(dome, kept)
-    told = [issue for issue in issues if issue.code == "ARM_CLEARANCE"]
+    _, issues = planned(dome, cell_with_clearance)
+    errors = [issue for issue in issues if issue.code == "ARM_CLEARANCE"]
     assert any(
-        re.match(r"the torch comes closer than 10 mm to post \d+", issue.message) for issue in told
+        re.match(r"the torch comes closer than 10 mm to post \d+", issue.message)
+        for issue in errors
     )

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A robot on a track under a part of 2 m: driven in the world by two PyKDL chains that are built here of the numbers."""
+"""A robot on a track under a part of 2 m: driven in the world by two PyKDL chains built here from
+the numbers."""
 
 import dataclasses
 import json
@@ -25,7 +26,7 @@ from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.toolpath import Bead, Layer, MotionRules, Toolpath
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
-from tests.core.planning.test_external_axes import bryant, driven, kdl_chain, kdl_pose
+from tests.core.planning.test_external_axes import bryant, drive_chain, kdl_chain, kdl_pose
 from tests.programs import build
 
 ROBOT, ABB = "kuka-kr6-r900-sixx", "abb-irb1200-5-90"
@@ -53,7 +54,7 @@ TRACK = {
 
 
 def slid(value):
-    """The track's plate seen from its base, worked out by PyKDL from the numbers above."""
+    """The track's plate seen from its base, computed by PyKDL from the numbers above."""
     joint = TRACK["joints"][0]
     chain = PyKDL.Chain()
     chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_pose(joint["origin"], joint["rpy"])))
@@ -65,7 +66,7 @@ def slid(value):
     chain.addSegment(
         PyKDL.Segment(PyKDL.Joint(), kdl_pose(TRACK["flange"]["origin"], TRACK["flange"]["rpy"]))
     )
-    return driven(chain, [value])
+    return drive_chain(chain, [value])
 
 
 @pytest.fixture(scope="module")
@@ -73,19 +74,19 @@ def track(tmp_path_factory):
     path = tmp_path_factory.mktemp("track") / "track.json"
     poses = []
     for value in (0.0, 700.25, -1500.0):
-        at = slid(value)
+        plate = slid(value)
         poses.append(
             {
                 "q": [value],
-                "origin": list(at.p),
-                "rotation": [[at.M[i, k] for k in range(3)] for i in range(3)],
+                "origin": list(plate.p),
+                "rotation": [[plate.M[i, k] for k in range(3)] for i in range(3)],
             }
         )
     path.write_text(json.dumps({**TRACK, "check_poses": poses}), encoding="utf-8")
     return path
 
 
-def cell_for(track, **more):
+def cell_for(track, **options):
     degrees = (*PLATFORM[:3], *np.radians(PLATFORM[3:]))
     return cells.resolve(
         CellParameters(
@@ -98,7 +99,7 @@ def cell_for(track, **more):
                 "external": f"{track} at {' '.join(map(str, STANDS))} carries robot",
                 "platform_diameter": 0.0,
                 "nozzle": NozzleParameters(tool=(*TORCH[:3], *np.radians(TORCH[3:]))),
-                **more,
+                **options,
             }
         ),
         np.eye(4),
@@ -107,16 +108,23 @@ def cell_for(track, **more):
 
 
 def wall(length=2000.0, layers=2, step=50.0):
-    """A wavy wall along X of the part, to and fro; the tool leans."""
+    """A wavy wall along X of the part, to and fro, with a leaning tool."""
     along = np.linspace(-0.5 * length, 0.5 * length, int(length / step) + 1)
     beads = []
     for layer in range(layers):
         x = along if layer % 2 == 0 else along[::-1]
         points = np.stack([x, 40.0 * np.sin(x / 200.0), np.full(len(x), 5.0 * layer)], axis=1)
         tool = np.tile([0.0, math.sin(0.2), math.cos(0.2)], (len(x), 1))
-        way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+        arc_length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
         beads.append(
-            Bead(points, tool, tool, 2.0 * math.pi * way / way[-1], np.full(len(x), 10.0), False)
+            Bead(
+                points,
+                tool,
+                tool,
+                2.0 * math.pi * arc_length / arc_length[-1],
+                np.full(len(x), 10.0),
+                False,
+            )
         )
     return Toolpath(tuple(Layer((bead,)) for bead in beads), np.eye(4), 5.0, 0.5, family="curves")
 
@@ -129,22 +137,23 @@ def planned(track):
 
 
 def in_the_world(joints):
-    """Nozzle's tip and tool axis in the part's frame of joint values (n, 7), mm and rad: by way of the world."""
+    """Tip and tool axis in the part's frame for joint values (n, 7), mm and rad, computed through
+    the world."""
     robot, robot_base = kdl_chain(machines.file_of(ROBOT))
     start = bryant(STANDS)
     at_zero = (start * slid(0.0)).Inverse()
     tips, tools = [], []
     for row in joints:
         stands = start * slid(row[6]) * at_zero
-        seen = (
+        tip_in_part = (
             bryant(PLATFORM).Inverse()
             * stands
             * robot_base
-            * driven(robot, row[:6])
+            * drive_chain(robot, row[:6])
             * bryant(TORCH)
         )
-        tips.append(list(seen.p))
-        tools.append([-component for component in seen.M.UnitZ()])
+        tips.append(list(tip_in_part.p))
+        tools.append([-component for component in tip_in_part.M.UnitZ()])
     return np.array(tips), np.array(tools)
 
 
@@ -156,13 +165,13 @@ def test_a_part_of_two_metres_is_met_at_every_point(track, planned):
     assert (planned.joints >= cell.limits.lower).all() and (
         planned.joints <= cell.limits.upper
     ).all()
-    # the arm alone cannot
+    # the arm without the track cannot
     alone = plan_joints(wall(), cell_for(track, external="none"), JointParameters())
     assert not alone.feasible
 
 
 def test_a_long_part_without_a_track_is_told_of_one(track):
-    """What is proposed is planned here, by another call than the one that proposes it."""
+    """The proposed remedy is planned here by a different call from the one that proposes it."""
     settings = CellParameters(
         machine=ROBOT,
         setup="tool-on-robot",
@@ -174,55 +183,59 @@ def test_a_long_part_without_a_track_is_told_of_one(track):
     )
     long, short = wall(1800.0, 1, 100.0), wall(500.0, 1, 100.0)
     assert not list(external_remedies.added(settings, (), short, {"UNREACHABLE"}))
-    ((told, changed),) = external_remedies.added(settings, (), long, {"UNREACHABLE"})
-    assert told == (
+    ((text, changed),) = external_remedies.added(settings, (), long, {"UNREACHABLE"})
+    assert text == (
         "`cell.external: [{machine: kuka-kl100-2, pose: [0, 0, -356, 0, 0, 90], carries: robot}]` and "
         "`cell.branch: auto`"
     )
     assert not plan_joints(
         long, cells.resolve(settings, np.eye(4), "curves"), JointParameters(method="constant")
     ).feasible
-    found = plan_joints(long, cells.resolve(changed, np.eye(4), "curves"), JointParameters())
-    assert found.feasible, [issue.message for issue in found.issues]
+    joint_path = plan_joints(long, cells.resolve(changed, np.eye(4), "curves"), JointParameters())
+    assert joint_path.feasible, [issue.message for issue in joint_path.issues]
     issues = plan_joints(
         long, cells.resolve(settings, np.eye(4), "curves"), JointParameters()
     ).issues
-    asked = other_cells.Tried(lambda: long, settings, (), ProcessParameters(), JointParameters())
-    (note,) = remedies.remedies(asked, found, issues, lambda *_: None)
-    assert note.code == "REMEDY" and told in note.message
-    # one that has a track already is moved to no other, and a positioner is not in the way
+    tried = other_cells.Tried(lambda: long, settings, (), ProcessParameters(), JointParameters())
+    (note,) = remedies.remedies(tried, joint_path, issues, lambda *_: None)
+    assert note.code == "REMEDY" and text in note.message
+    # a robot with a track gets no other, and there is no positioner to move
     assert not list(external_remedies.added(changed, (), long, {"UNREACHABLE"}))
     assert not list(external_remedies.move_positioner(changed, ()))
 
 
 def test_between_the_points_too(planned):
+    """Between the points the tip stays within the chord error."""
     for path in planned.beads:
         start, end = path.joints[:-1], path.joints[1:]
         for share in (0.3, 0.5):
             tip, _ = in_the_world(start + share * (end - start))
             along = np.diff(path.bead.points, axis=0)
             gap = tip - path.bead.points[:-1]
-            part = np.clip((gap * along).sum(1) / (along * along).sum(1), 0.0, 1.0)
-            assert np.linalg.norm(gap - part[:, None] * along, axis=1).max() <= 0.5 + 1e-6
+            share_of_segment = np.clip((gap * along).sum(1) / (along * along).sum(1), 0.0, 1.0)
+            assert (
+                np.linalg.norm(gap - share_of_segment[:, None] * along, axis=1).max() <= 0.5 + 1e-6
+            )
 
 
 def test_the_track_goes_along_smoothly_and_no_farther_than_it_needs(track, planned):
+    """The track moves smoothly and no farther than needed."""
     for path in planned.beads:
-        way, value = path.bead.points[:, 0], path.joints[:, 6]
+        x_values, value = path.bead.points[:, 0], path.joints[:, 6]
         assert (np.sign(np.diff(value)) == np.sign(np.diff(value))[0]).all()
-        # no faster along the part than the deposit, and at one and the same share of it wherever the wall goes
-        share = np.diff(value) / np.diff(way)
+        # no faster along the part than the deposit, and at a constant share of it
+        share = np.diff(value) / np.diff(x_values)
         assert np.abs(share).max() < 1.0 and np.ptp(share) < 0.05
     assert np.ptp(planned.joints[:, 6]) < 1900.0
-    # a place of the part has one place of the track, in whatever layer
-    first, second = planned.beads
-    ends = np.array([first.joints[0, 6], first.joints[-1, 6]])
-    assert np.abs(ends - second.joints[[-1, 0], 6]).max() < 1.0
-    told = figures(cell_for(track), planned)
-    assert told["moved_mm"] == {
-        "e1": pytest.approx(np.abs(np.diff(np.r_[first.joints[:, 6]])).sum() * 2.0, rel=1e-6)
+    # a position of the part has one position of the track in every layer
+    first_path, second_path = planned.beads
+    ends = np.array([first_path.joints[0, 6], first_path.joints[-1, 6]])
+    assert np.abs(ends - second_path.joints[[-1, 0], 6]).max() < 1.0
+    track_figures = figures(cell_for(track), planned)
+    assert track_figures["moved_mm"] == {
+        "e1": pytest.approx(np.abs(np.diff(np.r_[first_path.joints[:, 6]])).sum() * 2.0, rel=1e-6)
     }
-    assert told["turned_deg"] == {}
+    assert track_figures["turned_deg"] == {}
 
 
 def test_rapids_keep_the_limits_and_speeds(track, planned):
@@ -246,10 +259,10 @@ def test_where_the_arm_reaches_all_of_it_the_track_stands_still(track):
 
 
 def test_a_track_that_is_too_short_is_told(track, tmp_path):
-    told = json.loads(track.read_text(encoding="utf-8"))
-    told["limits"]["maker"]["axes"] = [[-100, 150]]
+    description = json.loads(track.read_text(encoding="utf-8"))
+    description["limits"]["maker"]["axes"] = [[-100, 150]]
     short = tmp_path / "short.json"
-    short.write_text(json.dumps(told), encoding="utf-8")
+    short.write_text(json.dumps(description), encoding="utf-8")
     path = plan_joints(wall(), cell_for(short), JointParameters())
     assert not path.feasible
     values = np.concatenate([bead.bead.external[:, 0] for bead in path.beads])
@@ -301,6 +314,7 @@ def by_abb(track):
     ("post", "kind"), [("kuka", "cartesian"), ("abb", "joint"), ("abb", "cartesian")]
 )
 def test_programs_are_read_back_and_driven_by_two_solvers(track, planned, by_abb, post, kind):
+    """Programs are read back and driven by two solvers."""
     cell, path = (cell_for(track), planned) if post == "kuka" else by_abb
     motion, issues = assemble(path, cell, ProcessParameters())
     assert not [issue for issue in issues if issue.level == "error"]
@@ -310,12 +324,12 @@ def test_programs_are_read_back_and_driven_by_two_solvers(track, planned, by_abb
     writer = catalogue.load(post)
     files = writer.write(program)
     assert not verify(cell, motion, program, files, writer, 0.5).issues
-    # a step of 0.5 mm of the track in one move is found
+    # a step of 0.5 mm of the track in one move is detected
     ((name, data),) = files.items()
     number = re.search(
         r"E1 (-?[\d.]+)}" if post == "kuka" else r"\[(-?[\d.]+),9E9,9E9,9E9,9E9,9E9\]",
         data.decode(),
     )[1]
-    other = {name: data.replace(number.encode(), f"{float(number) + 0.5:.4f}".encode(), 1)}
-    found = verify(cell, motion, program, other, writer, 0.5).issues
-    assert {issue.code for issue in found} & {"VERIFY_JOINTS", "VERIFY_POINT", "VERIFY_POSE"}
+    tampered = {name: data.replace(number.encode(), f"{float(number) + 0.5:.4f}".encode(), 1)}
+    issues_found = verify(cell, motion, program, tampered, writer, 0.5).issues
+    assert {issue.code for issue in issues_found} & {"VERIFY_JOINTS", "VERIFY_POINT", "VERIFY_POSE"}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A wire in proportion to the travel speed, from beads to programs read back; what is tampered with is found."""
+"""A wire feed in proportion to the travel speed, from beads to programs read back; tampering is
+detected."""
 
 import dataclasses
 import math
@@ -25,11 +26,11 @@ from freecad_am.posts.staubli import post as staubli
 from freecad_am.verify import verify
 from tests.programs import build
 
-SHARE = 14.8  # mm of wire to a mm of bead
+SHARE = 14.8  # mm of wire per mm of bead
 
 
 def bead(n=150, share=SHARE):
-    """Once and a half round a cylinder, up it, at speeds that vary."""
+    """One and a half turns around a cylinder, rising, with varying speeds."""
     base = Developable(60.0)
     theta, z = np.linspace(0.0, 3.0 * math.pi, n), np.linspace(10.0, 40.0, n)
     points = np.stack([60.0 * np.cos(theta), 60.0 * np.sin(theta), z], axis=1)
@@ -51,26 +52,26 @@ def planned(*beads):
     return cell, assemble(path, cell, ProcessParameters())[0]
 
 
-def program(cell, run, post="linuxcnc", **more):
+def program(cell, run, post="linuxcnc", **options):
     nc = NcParameters(wire_output=2, wire_gain=400.0)
     return build(
-        run, cell, ProcessParameters(), ProgramParameters(post=post, nc=nc, **more), "wire"
+        run, cell, ProcessParameters(), ProgramParameters(post=post, nc=nc, **options), "wire"
     )
 
 
 def test_columns_of_a_bead_go_with_its_points():
-    one = bead()
-    back = one.reversed()
+    open_bead = bead()
+    back = open_bead.reversed()
     assert (
         back.wire_share == SHARE
-        and (back.height == one.height[::-1]).all()
-        and (back.width == one.width[::-1]).all()
+        and (back.height == open_bead.height[::-1]).all()
+        and (back.width == open_bead.width[::-1]).all()
     )
-    finer = one.halved(np.array([3, 50]))
+    finer = open_bead.halved(np.array([3, 50]))
     np.testing.assert_allclose(
-        finer.height[[4, 52]], [one.height[3:5].mean(), one.height[50:52].mean()]
+        finer.height[[4, 52]], [open_bead.height[3:5].mean(), open_bead.height[50:52].mean()]
     )
-    np.testing.assert_array_equal(np.delete(finer.height, [4, 52]), one.height)
+    np.testing.assert_array_equal(np.delete(finer.height, [4, 52]), open_bead.height)
     ring = np.linspace(0.0, 2.0 * math.pi, 41)
     points = np.stack([np.cos(ring), np.sin(ring), 0.0 * ring], axis=1)
     points[-1] = points[0]
@@ -95,9 +96,9 @@ def test_a_program_with_a_wire_is_read_back_and_what_is_changed_is_found(post, m
     cell, run = planned(bead())
     np.testing.assert_array_equal(np.isfinite(run.wire), run.deposit)
     np.testing.assert_allclose(run.wire[run.deposit], SHARE * run.speed[run.deposit])
-    made = program(cell, run, post, motion=motion)
-    files = catalogue.load(post).write(made)
-    assert not verify(cell, run, made, files, catalogue.load(post), 0.05).issues
+    program_ = program(cell, run, post, motion=motion)
+    files = catalogue.load(post).write(program_)
+    assert not verify(cell, run, program_, files, catalogue.load(post), 0.05).issues
     ((name, content),) = files.items()
     values = list(re.finditer(r"(?:A_OUTA\[2\]=|M67 E1 Q)(\d+\.\d+)", content.decode()))
     assert len(values) > 100
@@ -105,20 +106,20 @@ def test_a_program_with_a_wire_is_read_back_and_what_is_changed_is_found(post, m
         values[0],
         values[57],
         values[-1],
-    ):  # one digit of one value, or the value left out
-        last = content[tamper.end(1) - 1 : tamper.end(1)]
-        other = (
+    ):  # one digit of one value, or the value omitted
+        digit = content[tamper.end(1) - 1 : tamper.end(1)]
+        tampered = (
             content[: tamper.end(1) - 1]
-            + (b"4" if last != b"4" else b"7")
+            + (b"4" if digit != b"4" else b"7")
             + content[tamper.end(1) :]
         )
         line_start, line_end = (
             content.rfind(b"\n", 0, tamper.start()) + 1,
             content.find(b"\n", tamper.start()) + 1,
         )
-        for text in (other, content[:line_start] + content[line_end:]):
-            found = verify(cell, run, made, {name: text}, catalogue.load(post), 0.05).issues
-            assert {issue.code for issue in found} == {"VERIFY_WIRE"}
+        for text in (tampered, content[:line_start] + content[line_end:]):
+            issues = verify(cell, run, program_, {name: text}, catalogue.load(post), 0.05).issues
+            assert {issue.code for issue in issues} == {"VERIFY_WIRE"}
 
 
 @pytest.mark.parametrize("post", ["siemens", "linuxcnc"])
@@ -137,17 +138,20 @@ def test_a_text_that_would_stop_within_a_bead_is_not_read(post):
 
 
 def test_only_what_varies_is_told():
+    """Only a varying wire feed is written."""
     cell, run = planned(bead(share=None))
-    made = program(cell, run)
-    assert all(block.wire is None for block in made.blocks if isinstance(block, (Moves, DepositOn)))
-    assert np.isnan(run.wire).all() and "Wire in proportion" not in " ".join(made.remarks)
+    program_ = program(cell, run)
+    assert all(
+        block.wire is None for block in program_.blocks if isinstance(block, (Moves, DepositOn))
+    )
+    assert np.isnan(run.wire).all() and "Wire in proportion" not in " ".join(program_.remarks)
     cell, run = planned(bead(share=None), bead())
-    told = [
+    has_wire = [
         block.wire is not None
         for block in program(cell, run).blocks
         if isinstance(block, DepositOn)
     ]
-    assert told == [False, True]
+    assert has_wire == [False, True]
     dry = program(cell, run, dry_run=True)
     assert all(block.wire is None for block in dry.blocks if isinstance(block, (Moves, DepositOn)))
     files = catalogue.load("linuxcnc").write(dry)
@@ -156,7 +160,7 @@ def test_only_what_varies_is_told():
 
 @pytest.mark.parametrize("post", [fanuc, staubli])
 def test_robots_refuse_it_with_the_reason(post):
-    some = Moves(
+    moves = Moves(
         "deposit",
         0,
         0,
@@ -165,9 +169,9 @@ def test_robots_refuse_it_with_the_reason(post):
         np.full(3, 6.0),
     )
     limits = {"max_speed": (2.0,) * 6, "station": (0.0,) * 6, "carried": (0.0,) * 6}
-    plain = Program("part", "a robot", (DepositOn(), some, DepositOff()), (False,) * 6, **limits)
+    plain = Program("part", "a robot", (DepositOn(), moves, DepositOff()), (False,) * 6, **limits)
     assert post.write(plain)
-    blocks = (DepositOn(), dataclasses.replace(some, wire=np.full(3, 100.0)), DepositOff())
+    blocks = (DepositOn(), dataclasses.replace(moves, wire=np.full(3, 100.0)), DepositOff())
     with pytest.raises(InputError) as caught:
         post.write(dataclasses.replace(plain, blocks=blocks))
     assert (caught.value.code, caught.value.where) == ("NO_WIRE_OUTPUT", "process.wire.feed_mode")
