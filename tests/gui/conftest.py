@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A person at the window: sees buttons, fields and pictures, clicks and types; whatever pops up unasked is noted."""
+"""A person at the window, who sees buttons, fields and pictures, clicks and types. Unexpected
+dialogs are recorded."""
 
 import importlib
 import os
@@ -14,24 +15,24 @@ from freecad_am.macro import features
 from tests import plans
 from tests.gui.hand import Hand
 
-PATIENCE = 2.0  # s a dialog may stand there before it counts as stray
+DIALOG_TIMEOUT_S = 2.0  # s that a dialog may stay open before it counts as unexpected
 
 
 def pytest_collection_modifyitems(items):
-    here = Path(__file__).parent
+    gui_folder = Path(__file__).parent
     for item in items:
-        if here in Path(str(item.fspath)).parents:
+        if gui_folder in Path(str(item.fspath)).parents:
             item.add_marker(pytest.mark.gui)
 
 
 class ModalWatch:
-    """Notes and dismisses message boxes that nobody expects: they would hang the run."""
+    """Record and dismiss unexpected message boxes, which would block the run."""
 
     def __init__(self, qt_core, qt_gui):
         self.application = qt_gui.QApplication
         self.label = qt_gui.QLabel
         self.texts = []
-        self.awaited = ()  # kinds of dialogs that the person has asked for
+        self.awaited = ()  # kinds of dialogs that the person expects
         self.first_seen = None
         self.timer = qt_core.QTimer()
         self.timer.setInterval(200)
@@ -40,7 +41,7 @@ class ModalWatch:
 
     def look(self):
         dialog = self.application.activeModalWidget()
-        # that of long work comes as it should
+        # the dialog of long work is expected
         if (
             dialog is None
             or dialog.objectName() == "RoboticAM_Progress"
@@ -50,7 +51,7 @@ class ModalWatch:
             return
         if self.first_seen is None:
             self.first_seen = time.monotonic()
-        if time.monotonic() - self.first_seen > PATIENCE:
+        if time.monotonic() - self.first_seen > DIALOG_TIMEOUT_S:
             words = [label.text() for label in dialog.findChildren(self.label) if label.text()]
             self.texts.append(" ".join([dialog.windowTitle(), *words]))
             self.first_seen = None
@@ -58,7 +59,7 @@ class ModalWatch:
 
 
 class Person:
-    """What a person does; every step fails when the thing is not there to be seen."""
+    """The actions of a person; each fails if its widget is not visible."""
 
     def __init__(self, folder):
         import FreeCADGui
@@ -79,13 +80,14 @@ class Person:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             self.widgets.QApplication.processEvents(self.core.QEventLoop.AllEvents, 20)
-            # a test is one event to Qt, which deletes between two what is to be deleted later
+            # to Qt a test is one event, and deferred deletions happen between events
             self.core.QCoreApplication.sendPostedEvents(None, self.deferred)
             time.sleep(0.008)
         self.give_focus_back()
 
     def give_focus_back(self):
-        """To the main window once a dialog is closed, such as that of long work: there is no window manager that would."""
+        """Give the focus to the main window after a dialog closes, such as that of long work: there
+        is no window manager to do it."""
         application = self.widgets.QApplication
         if not (
             application.activeWindow()
@@ -97,22 +99,22 @@ class Person:
     def until(self, condition, what, seconds=20):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
-            found = condition()
-            if found:
-                return found
+            value = condition()
+            if value:
+                return value
             self.idle(0.05)
-        found = condition()  # what the window did meanwhile may have taken all of the time
-        if found:
-            return found
+        value = condition()  # the window's own work since then may have taken all of the time
+        if value:
+            return value
         raise AssertionError(f"waited {seconds} s for {what}")
 
-    # ---- what is there
+    # ---- widgets
 
     def present(self, kind, *name, below=None):
-        """Widgets of a kind below another, the main window; without those that PySide takes for deleted ones, which were at
-        their place in memory before (docs/versions.md)."""
-        found = (self.window if below is None else below).findChildren(kind, *name)
-        return [one for one in found if self.qt.isValid(one)]
+        """Return widgets of a kind below another one or the main window. Widgets that PySide takes
+        for deleted ones at the same address are left out (docs/versions.md)."""
+        widgets = (self.window if below is None else below).findChildren(kind, *name)
+        return [widget for widget in widgets if self.qt.isValid(widget)]
 
     # ---- toolbar, panels, tree
 
@@ -133,7 +135,8 @@ class Person:
         raise AssertionError(f"no button {command} is to be seen")
 
     def click(self, command):
-        """The tool's button; in a window too narrow for all of them the entry of the menu."""
+        """Click the tool's button, or its menu entry if the window is too narrow for all
+        buttons."""
         try:
             button = self.button(command)
         except AssertionError:
@@ -143,7 +146,7 @@ class Person:
         self.idle()
 
     def entry(self, command):
-        """The entry of a tool in the menu of the workbench."""
+        """Return the entry of a tool in the menu of the workbench."""
         for menu in self.window.menuBar().findChildren(self.widgets.QMenu):
             for action in menu.actions():
                 if command in (action.objectName(), action.data()):
@@ -159,11 +162,11 @@ class Person:
         return self.until(visible, f"the panel {name}", 5)[0]
 
     def field(self, panel, name):
-        found = panel.findChildren(
+        fields = panel.findChildren(
             self.widgets.QWidget, name
-        )  # of the others some may be boxes that `press` let go of
-        assert len(found) == 1, f"{len(found)} fields are called {name}"
-        return found[0]
+        )  # the others may be boxes that `press` has released
+        assert len(fields) == 1, f"{len(fields)} fields are called {name}"
+        return fields[0]
 
     def type(self, panel, name, text):
         widget = self.field(panel, name)
@@ -177,58 +180,58 @@ class Person:
 
     def choose(self, panel, name, text):
         box = self.field(panel, name)
-        index = max(
-            box.findText(text), box.findData(text)
-        )  # what is shown, or the key it stands for
+        index = max(box.findText(text), box.findData(text))  # the shown text, or its key
         assert index >= 0, f"{name} does not offer {text}"
         box.setCurrentIndex(index)
         self.idle(0.05)
 
     def as_revolution(self, panel=None):
-        """Choose parts of revolution in New Job, whatever it proposes: one bead in place of a filled solid."""
+        """Choose parts of revolution in New Job, whatever it proposes: one bead in place of a
+        filled solid."""
         panel = panel or self.panel("RoboticAM_NewJob")
         box = self.field(panel, "Kind")
-        at = box.findText("Part of revolution")
-        box.setCurrentIndex(at)  # a proposal that comes in before it is told would take its place
-        box.activated.emit(at)
+        index = box.findText("Part of revolution")
+        box.setCurrentIndex(index)  # a later proposal would overwrite the choice
+        box.activated.emit(index)
         self.idle(0.05)
 
     def press(self, standard_button):
-        wanted = getattr(self.widgets.QDialogButtonBox, standard_button)
+        button_kind = getattr(self.widgets.QDialogButtonBox, standard_button)
         boxes = self.present(self.widgets.QDialogButtonBox)
         try:
             for box in boxes:
-                # one found earlier may be gone, and another one be at its place
-                if self.qt.isValid(box) and box.isVisible() and box.button(wanted) is not None:
-                    box.button(wanted).click()
+                # a box found earlier may be deleted, with another one at its address
+                if self.qt.isValid(box) and box.isVisible() and box.button(button_kind) is not None:
+                    box.button(button_kind).click()
                     self.idle()
                     return
         finally:
-            # Python keeps what the window has found, and would take for it whatever comes to be at its place later
+            # Python keeps wrappers of found widgets, and would use them for later widgets at the
+            # same address
             for box in boxes:
                 self.qt.invalidate(box)
         raise AssertionError(f"no button {standard_button} is to be seen")
 
     def will_answer(self, standard_button):
-        """Answer the question that the next step brings up; returns a list that then holds the question."""
-        asked, end = [], time.monotonic() + PATIENCE
+        """Answer the question of the next step; the returned list then holds the question."""
+        questions, end = [], time.monotonic() + DIALOG_TIMEOUT_S
 
         def answer():
             dialog = self.widgets.QApplication.activeModalWidget()
             if isinstance(dialog, self.widgets.QMessageBox):
-                asked.append(dialog.text())
+                questions.append(dialog.text())
                 dialog.button(getattr(self.widgets.QMessageBox, standard_button)).click()
-            elif time.monotonic() < end:  # a busy machine takes its time to ask
+            elif time.monotonic() < end:  # on a busy machine the question takes its time
                 self.core.QTimer.singleShot(100, answer)
 
         self.core.QTimer.singleShot(500, answer)
-        return asked
+        return questions
 
     def panel_closed(self):
         self.until(lambda: not self.gui.Control.activeDialog(), "the panel to close")
 
     def panel_error(self, panel):
-        """What is wrong: at the top of the panel, and under its fields."""
+        """Return the errors at the top of the panel and under its fields."""
         labels = [self.field(panel, "error"), *panel.findChildren(self.widgets.QLabel)]
         notes = [
             label
@@ -257,10 +260,10 @@ class Person:
         return view
 
     def picture(self, width=600, height=450):
-        """The 3D view as (pixels, 3) colours 0..255."""
+        """Return the 3D view as (pixels, 3) colours 0..255."""
         import numpy as np
 
-        path = str(self.folder / "view.bmp")  # a PNG takes longer to pack than to draw
+        path = str(self.folder / "view.bmp")  # packing a PNG takes longer than drawing
         self.look().saveImage(path, width, height, "White")
         image = self.widgets.QImage(path).convertToFormat(self.widgets.QImage.Format_RGB32)
         rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(
@@ -269,14 +272,16 @@ class Person:
         return rows[:, : image.width(), 2::-1].reshape(-1, 3).astype(int)
 
     def path_pixels(self):
-        """How many pixels have the colours of the first layers (blue) and of the last (yellow)."""
+        """Return how many pixels have the colours of the first layers (blue) and of the last
+        (yellow)."""
         red, green, blue = self.picture().T
         return int(((blue > red + 60) & (blue > green + 30)).sum()), int(
             ((red > blue + 60) & (green > blue + 60)).sum()
         )
 
     def path_is_seen(self):
-        """Wait until the first and the last layers are in the picture, which a busy machine draws late."""
+        """Wait until the first and the last layers are visible, which takes time on a busy
+        machine."""
 
         def both():
             counts.append(self.path_pixels())
@@ -286,7 +291,7 @@ class Person:
         self.until(both, "a path in blue and yellow", 10)
 
     def screenshot(self, name):
-        """The whole screen, kept where ROBOTIC_AM_PICTURES says; nothing where it says nothing, as nobody looks at it."""
+        """Save the whole screen in the folder ROBOTIC_AM_PICTURES; do nothing if it is not set."""
         folder = os.environ.get("ROBOTIC_AM_PICTURES")
         self.idle(0.3)
         if folder:
@@ -299,7 +304,7 @@ class Person:
             assert grabbed.save(os.path.join(folder, name + ".png"))
 
     def screen_pixels(self, colour, within=24):
-        """How many pixels of the 3D view, as the screen shows it, have a colour 0..255."""
+        """Return how many pixels of the 3D view, as the screen shows it, have a colour 0..255."""
         import numpy as np
 
         self.idle(0.15)
@@ -321,7 +326,7 @@ class Person:
         )
 
     def console(self):
-        """The text of the report view."""
+        """Return the text of the report view."""
         view = self.window.findChild(self.widgets.QTextEdit, "Report view")
         assert view is not None, "there is no report view to watch"
         return view.toPlainText()
@@ -329,7 +334,7 @@ class Person:
 
 @pytest.fixture(autouse=True)
 def planned_once(request):
-    """Jobs that several tests make are planned for the first of them, but where a test looks at the planning itself."""
+    """Plan jobs that several tests use once, except in tests of the planning itself."""
     if request.node.get_closest_marker("planned_anew"):
         yield
     else:
@@ -344,19 +349,20 @@ def hand(person):
 
 @pytest.fixture
 def hemisphere():
-    """A new document with a hemisphere of 45 mm radius, its label with a blank and accents."""
+    """Return a new document with a hemisphere of 45 mm radius, whose label has a blank and
+    accents."""
     document = App.newDocument("Window")
-    part = document.addObject("Part::Sphere", "Sphere")
-    part.Label = "Hémisphère n° 1"
-    part.Radius, part.Angle1, part.Angle2 = 45, 0, 90
+    sphere = document.addObject("Part::Sphere", "Sphere")
+    sphere.Label = "Hémisphère n° 1"
+    sphere.Radius, sphere.Angle1, sphere.Angle2 = 45, 0, 90
     document.recompute()
-    return part
+    return sphere
 
 
 @pytest.fixture
 def coarse(monkeypatch):
-    """Features get layers of 5 mm, walls of 10 mm that nothing is kept clear of, where nothing else is said: a new job is
-    planned in a fifth of the time."""
+    """Give features layers of 5 mm, and walls 10 mm without clearance, unless the test sets other
+    values: a new job then takes a fifth of the time."""
     make, low = api.make_feature_of, {"layer_height": 5.0, "chord_error": 0.1}
     of_kind = {
         "revolution": low,
@@ -365,16 +371,19 @@ def coarse(monkeypatch):
         "solid": low,
     }
 
-    def made(doc, kind, *others, values=None, **named):
-        return make(doc, kind, *others, values={**of_kind.get(kind, {}), **(values or {})}, **named)
+    def make_coarse(doc, kind, *arguments, values=None, **named):
+        return make(
+            doc, kind, *arguments, values={**of_kind.get(kind, {}), **(values or {})}, **named
+        )
 
-    monkeypatch.setattr(api, "make_feature_of", made)
-    monkeypatch.setattr(features, "make_feature_of", made)
+    monkeypatch.setattr(api, "make_feature_of", make_coarse)
+    monkeypatch.setattr(features, "make_feature_of", make_coarse)
 
 
 @pytest.fixture
 def rough_map(monkeypatch):
-    """Of the map of the free rotation one row of six is looked at for the arm, and no more, where others stand beside it."""
+    """Check the arm in only one of six rows of the redundancy map, if there are neighbours on both
+    sides."""
     from freecad_am.gui.redundancy_map import dock as cells
 
     monkeypatch.setattr(cells, "FINE_STRIDE", cells.ROUGH_STRIDE)
@@ -382,20 +391,20 @@ def rough_map(monkeypatch):
 
 @pytest.fixture
 def joint_path(person, hemisphere):
-    """A joint path of the hemisphere, its beads alone to be seen."""
+    """Return a joint path of the hemisphere with only its beads visible."""
     document = hemisphere.Document
     cell = api.make_cell(document)
     toolpath = api.make_toolpath(
         document, api.make_feature(document, hemisphere, layer_height=5), cell
     )
-    made = api.make_joint_path(document, toolpath, cell)
+    path = api.make_joint_path(document, toolpath, cell)
     cell.ViewObject.Visibility = document.Feature.ViewObject.Visibility = False
     person.idle()
-    return made
+    return path
 
 
 def _forget_places(window):
-    """Docks of ours come in the next test as they come in a new session."""
+    """Forget the positions of our docks, as in a new session."""
     from freecad_am.gui import dock_area
 
     for dock in dock_area._docks.values():
@@ -408,7 +417,7 @@ def person(tmp_path, capfd, request):
     someone = Person(tmp_path)
     watch = someone.watch = ModalWatch(someone.core, someone.widgets)
     someone.open_workbench()
-    place, layout = someone.window.geometry(), someone.window.saveState()
+    geometry, layout = someone.window.geometry(), someone.window.saveState()
     mark = f"watching {request.node.name}"
     App.Console.PrintError(mark + "\n")
     someone.until(lambda: mark in someone.console(), "the report view to show errors", 5)
@@ -421,17 +430,17 @@ def person(tmp_path, capfd, request):
     for name in list(App.listDocuments()):
         App.closeDocument(name)
     for page in someone.present(someone.widgets.QDialog, "RoboticAM_Help"):
-        page.hide()  # the window for help lies over the 3D view
-    for dock in someone.present(someone.widgets.QDockWidget):  # one that stays open goes on looking
+        page.hide()  # the window for help covers the 3D view
+    for dock in someone.present(someone.widgets.QDockWidget):  # an open dock keeps observing
         if dock.objectName().startswith("RoboticAM"):
             if dock.isFloating():
-                dock.show()  # Qt 6 takes one that is put back while it is hidden for a window of its own ever after
+                dock.show()  # in Qt 6, a dock that is redocked while hidden stays a separate window
                 dock.setFloating(False)
             dock.close()
     someone.idle()
     someone.window.setGeometry(
-        place
-    )  # docks that needed more room have made it wider, and panels and tree lower
+        geometry
+    )  # docks that needed more room have made the window wider, and panels and tree lower
     someone.window.restoreState(layout)
     _forget_places(someone.window)
     someone.idle(0.1)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The hand of a person at the window."""
+"""Move the mouse and press keys like a person at the window."""
 
 import subprocess
 import time
 
 
 class Hand:
-    """The mouse and the keys themselves: events go through the X server, to whatever is under the pointer."""
+    """Send mouse and key events through the X server, to the widget under the pointer."""
 
     def __init__(self, person):
         self.person = person
@@ -17,40 +17,42 @@ class Hand:
         assert process.returncode == 0
         self.person.idle(0.1)
 
-    def at(self, place, *held):
-        """Click at a place of the screen while keys are held."""
-        keys = [word for key in held for word in ("keydown", key)]
-        self.do("mousemove", *place)  # so that the view sees the pointer come
-        released = [word for key in held for word in ("keyup", key)]
+    def at(self, position, *held_keys):
+        """Click at a position on the screen while keys are down."""
+        keys = [word for key in held_keys for word in ("keydown", key)]
+        self.do("mousemove", *position)  # so that the view sees the pointer arrive
+        released = [word for key in held_keys for word in ("keyup", key)]
         self.do(*keys, "click", "1", *released)
 
     def click(self, widget):
-        """Click in the middle of a widget, once it no longer moves; one of a panel is scrolled to."""
+        """Click in the middle of a widget after it stops moving; scroll to it if it is in a
+        panel."""
         self.reveal(widget)
 
         def middle():
             centre = widget.mapToGlobal(widget.rect().center())
             return centre.x(), centre.y()
 
-        seen = [middle()]
-        while len(seen) < 4 or len(set(seen[-4:])) > 1:
+        positions = [middle()]
+        while len(positions) < 4 or len(set(positions[-4:])) > 1:
             self.person.idle(0.04)
-            seen.append(middle())
-        self.at(seen[-1])
+            positions.append(middle())
+        self.at(positions[-1])
 
     def reveal(self, widget):
-        """Turn the wheel over the margin of a panel until all of a widget is in sight, or as much of it as goes in."""
+        """Turn the wheel over the margin of a panel until the whole widget is visible, or as much
+        of it as fits."""
         areas = [
-            one
-            for one in self.person.present(self.person.widgets.QScrollArea)
-            if one.isVisible() and one.isAncestorOf(widget)
+            area
+            for area in self.person.present(self.person.widgets.QScrollArea)
+            if area.isVisible() and area.isAncestorOf(widget)
         ]
         if not areas:
             return
         area = next(
-            one
-            for one in areas
-            if not any(one is not other and one.isAncestorOf(other) for other in areas)
+            area
+            for area in areas
+            if not any(area is not outer and area.isAncestorOf(outer) for outer in areas)
         )
         sight = area.viewport()
         for _ in range(40):
@@ -64,21 +66,22 @@ class Hand:
         raise AssertionError(f"{widget.objectName()} does not come in sight")
 
     def enter(self, panel, name, text):
-        """Type over what a field holds, and leave it."""
+        """Replace the text of a field, and leave it."""
         field = self.person.field(panel, name)
-        parts = [field, *field.findChildren(self.person.widgets.QWidget)]
-        # on a busy machine the click may be at work when the first key comes, and what a preview tells in the panel may
-        # move the field away from under the pointer: a person then clicks again
+        widgets = [field, *field.findChildren(self.person.widgets.QWidget)]
+        # on a busy machine the window may still process the click when the first key arrives, and a
+        # preview's message may move the field away from the pointer: a person then clicks again
         for _ in range(3):
             self.click(field)
             end = time.monotonic() + 3.0
-            while time.monotonic() < end and not any(part.hasFocus() for part in parts):
+            while time.monotonic() < end and not any(widget.hasFocus() for widget in widgets):
                 self.person.idle(0.05)
-            if any(part.hasFocus() for part in parts):
+            if any(widget.hasFocus() for widget in widgets):
                 break
-        assert any(part.hasFocus() for part in parts), f"{name} does not get the keys"
+        assert any(widget.hasFocus() for widget in widgets), f"{name} does not get the keys"
         self.do("key", "ctrl+a")
-        # letters that the keyboard has not are on it for as long as the rest is typed, and a busy window looks late
+        # the keyboard gets missing letters while the text is typed, and a busy window reads them
+        # late
         self.do("type", "--delay", "20" if text.isascii() else "250", text)
         self.do("key", "Tab")
 
@@ -91,7 +94,8 @@ class Hand:
         self.do("key", "ctrl+shift+z")
 
     def _when_able(self, command):
-        """Wait until a tool is lit: FreeCAD looks at them when it has nothing else to do, and takes no keys for others."""
+        """Wait until a tool is enabled: FreeCAD updates tools when it is idle, and ignores the keys
+        of disabled ones."""
         bars = self.person.present(self.person.widgets.QToolBar)
         tools = [
             tool
@@ -103,7 +107,7 @@ class Hand:
         self.person.until(tools[0].isEnabled, f"{command} to be enabled", 5)
 
     def in_tree(self, label):
-        """The place of an object of the tree on the screen, brought into sight."""
+        """Scroll to an object in the tree and return its position on the screen."""
 
         def there():
             trees = self.person.present(self.person.widgets.QTreeWidget)
@@ -115,30 +119,30 @@ class Hand:
 
         tree = self.person.until(there, f"{label} in the tree", 5)[
             0
-        ]  # which follows the document a little later
+        ]  # the tree follows the document a little later
         item = tree.findItems(label, _anywhere(self.person.core))[0]
         tree.scrollToItem(item)
         self.person.idle(0.1)
-        place = tree.visualItemRect(item).center()
-        place.setX(
+        position = tree.visualItemRect(item).center()
+        position.setX(
             tree.visualItemRect(item).left() + 48
-        )  # on its text: before it FreeCAD 1.0 has an eye, which hides
-        where = tree.viewport().mapToGlobal(place)
+        )  # on its text: FreeCAD 1.0 has an eye before it, which hides the object
+        where = tree.viewport().mapToGlobal(position)
         return where.x(), where.y()
 
-    def click_tree(self, label, *held):
+    def click_tree(self, label, *keys):
         """Click an object in the tree."""
-        self.at(self.in_tree(label), *held)
+        self.at(self.in_tree(label), *keys)
 
     def drag_in_tree(self, label, onto):
         """Drag an object of the tree onto another one, and drop it there."""
-        self.in_tree(onto)  # both are brought into sight before either place is taken
+        self.in_tree(onto)  # scroll to both before reading either position
         (x, y), (far_x, far_y) = self.in_tree(label), self.in_tree(onto)
-        way = [(x + (far_x - x) * k // 4, y + (far_y - y) * k // 4) for k in (1, 2, 3, 4)]
+        steps = [(x + (far_x - x) * k // 4, y + (far_y - y) * k // 4) for k in (1, 2, 3, 4)]
         moves = [
             word
-            for place in [*way, (far_x + 1, far_y)]
-            for word in ("mousemove", *place, "sleep", 0.1)
+            for position in [*steps, (far_x + 1, far_y)]
+            for word in ("mousemove", *position, "sleep", 0.1)
         ]
         self.do(
             "mousemove",
@@ -158,14 +162,14 @@ class Hand:
         )
         self.person.idle(0.5)
 
-    def click_face(self, obj, face, *held):
-        """Click a face of an object where it is to be seen in the 3D view; what a panel covers is brought out from under it
-        by the wheel (FreeCAD 1.1 lays panels over the view)."""
+    def click_face(self, obj, face, *keys):
+        """Click a face of an object where it is visible in the 3D view; if a panel covers it, turn
+        the wheel until it is not (FreeCAD 1.1 puts panels over the view)."""
         view = self.person.gui.getDocument(obj.Document.Name).activeView()
         for _ in range(6):
-            place = self.seen(view, obj, face)
-            if place:
-                self.at(place, *held)
+            position = self.seen(view, obj, face)
+            if position:
+                self.at(position, *keys)
                 return
             corner = self.corner(view)
             self.do("mousemove", corner.x() + 5, corner.y() + view.getSize()[1] // 2, "click", 5)
@@ -173,7 +177,8 @@ class Hand:
         raise AssertionError(f"{obj.Label} {face} is not to be seen")
 
     def seen(self, view, obj, face):
-        """A place of the screen where a face of an object is seen, with a little of it all around; None without one."""
+        """Return a position on the screen where a face of an object and some margin around it are
+        visible; None without one."""
         points, triangles = obj.Shape.getElement(face).tessellate(2.0)
         on_screen = getattr(view, "getPointOnViewport", None) or view.getPointOnScreen
         for corners in triangles:
@@ -193,7 +198,7 @@ class Hand:
         return None
 
     def corner(self, view):
-        """The upper left corner of a 3D view on the screen."""
+        """Return the upper left corner of a 3D view on the screen."""
         return view.graphicsView().mapToGlobal(self.person.core.QPoint(0, 0))
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jobs that take minutes: a document, the macro function that computes, and its inputs. For tests, and for `bench`."""
+"""Jobs that take minutes, for tests and for `bench`: a document, the macro function that computes,
+and its inputs."""
 
 from types import SimpleNamespace
 
@@ -9,21 +10,21 @@ from freecad_am import api
 
 
 def sphere(document, angle=90):
-    part = document.addObject("Part::Sphere", "Sphere")
-    part.Radius, part.Angle1, part.Angle2 = 45, 0, angle
+    sphere_object = document.addObject("Part::Sphere", "Sphere")
+    sphere_object.Radius, sphere_object.Angle1, sphere_object.Angle2 = 45, 0, angle
     document.recompute()
-    return part
+    return sphere_object
 
 
 def revolution(root):
-    """A toolpath of a hemisphere with very thin layers."""
+    """Return a job of a toolpath of a hemisphere with very thin layers."""
     document = App.newDocument("Long")
     feature = api.make_feature(document, sphere(document), layer_height=0.02, chord_error=0.0005)
     return SimpleNamespace(document=document, function="make_toolpath", inputs={"feature": feature})
 
 
 def wall(root):
-    """A toolpath of a bend on a pipe with very thin layers."""
+    """Return a job of a toolpath of a bend on a pipe with very thin layers."""
     document = App.newDocument("Long")
     pipe = document.addObject("Part::Cylinder", "Pipe")
     pipe.Radius, pipe.Height = 32, 160
@@ -35,7 +36,7 @@ def wall(root):
 
 
 def hub(root):
-    """A toolpath of blades on a cone with very thin layers."""
+    """Return a job of a toolpath of blades on a cone with very thin layers."""
     document = App.newDocument("Long")
     cone = document.addObject("Part::Cone", "Hub")
     cone.Radius1, cone.Radius2, cone.Height = 40, 25, 60
@@ -50,7 +51,7 @@ def hub(root):
 
 
 def joints(root, layer_height=0.15, chord_error=0.002):
-    """A joint path of a hemisphere with thin layers."""
+    """Return a job of a joint path of a hemisphere with thin layers."""
     document = App.newDocument("Long")
     cell = api.make_cell(document, limits="paper")
     feature = api.make_feature(
@@ -63,7 +64,8 @@ def joints(root, layer_height=0.15, chord_error=0.002):
 
 
 def elbow(root):
-    """A wall whose first layer takes seconds, on a mesh of a hundred thousand triangles."""
+    """Return a job of a wall whose first layer takes seconds, on a mesh of a hundred thousand
+    triangles."""
     document = App.newDocument("Long")
     folder = root / "resources" / "examples" / "walls"
     bend, block = (
@@ -74,4 +76,4 @@ def elbow(root):
 
 
 JOBS = (revolution, wall, hub, joints)
-PREVIEWED = (wall, hub, elbow)  # whose panels show what they would make
+PREVIEWED = (wall, hub, elbow)  # jobs whose panels have a preview

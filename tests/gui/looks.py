@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Run by FreeCAD's window: opens every panel and dock in a light and a dark theme and measures what is seen of it.
-
-LOOKS_FOLDER names the folder for the pictures and for `looks.json`, which holds what is wrong, one text each.
-"""
+"""FreeCAD's window runs this script. It opens every panel and dock in a light and a dark theme and
+measures their visibility. LOOKS_FOLDER names the folder for the pictures and for `looks.json`, a
+list of faults."""
 
 import json
 import os
@@ -19,10 +18,10 @@ from PySide import QtCore, QtGui
 FOLDER = Path(os.environ["LOOKS_FOLDER"])
 sys.path.insert(0, os.environ["LOOKS_ROOT"])
 LEAST_CONTRAST = 4.5
-PATIENCE = 10  # s that a panel may take to open
-LOOKS = 6  # pictures of the same, at most
-PAGES = int(os.environ.get("LOOKS_PAGES", "6"))  # of a panel, at most
-MARGIN = 6  # pixels about a panel, which FreeCAD holds at 250 where its view has less
+TIMEOUT_S = 10  # s that a panel may take to open
+MAX_PICTURES = 6  # maximum number of pictures of the same panel
+MAX_PAGES = int(os.environ.get("LOOKS_PAGES", "6"))  # maximum number of pages of a panel
+MARGIN_PX = 6  # pixels around a panel, which FreeCAD keeps at 250 if its view is narrower
 DARK = ("Behave-dark.qss", "FreeCAD Dark.qss")
 PANELS = (
     "NewJob",
@@ -58,8 +57,12 @@ def present(kind, below):
 
 
 def screen():
-    shown = QtGui.QApplication.primaryScreen()
-    grabbed = shown.grabWindow(0) if QtCore.qVersion().startswith("5") else shown.grabWindow()
+    primary_screen = QtGui.QApplication.primaryScreen()
+    grabbed = (
+        primary_screen.grabWindow(0)
+        if QtCore.qVersion().startswith("5")
+        else primary_screen.grabWindow()
+    )
     return grabbed.toImage().convertToFormat(QtGui.QImage.Format_RGB32)
 
 
@@ -74,7 +77,7 @@ def luminance(colours):
 
 
 def contrast(area):
-    """The largest contrast of a pixel with the colour that most pixels of an area have."""
+    """Return the largest contrast of a pixel with the most frequent colour of an area."""
     light = luminance(area).ravel()
     values, counts = np.unique(np.round(light, 3), return_counts=True)
     ground = values[counts.argmax()]
@@ -92,7 +95,7 @@ def text_of(widget):
 
 
 def is_seen(widget):
-    """Whether all of a widget is on the screen, with nothing over it."""
+    """Return whether the whole widget is on the screen with nothing over it."""
     return (
         widget.isVisible()
         and widget.isEnabled()
@@ -102,36 +105,37 @@ def is_seen(widget):
 
 
 def judge(top, name, wrong):
-    """Contrast and room of every text below a widget, as the screen shows it once previews and layouts are at rest, which
-    takes longer on a busy machine: what is wrong is so in each of several pictures."""
-    for _ in range(LOOKS):
+    """Return the faults in contrast and room of every text below a widget, as the screen shows it
+    when previews and layouts are at rest, which takes longer on a busy machine. A fault must appear
+    in several pictures."""
+    for _ in range(MAX_PICTURES):
         idle(0.3)
-        found = wrong_with(top, name)
-        if not found:
+        faults = wrong_with(top, name)
+        if not faults:
             return
-    wrong.extend(found)
+    wrong.extend(faults)
 
 
-def part_of(seen, widget, rect):
-    """The pixels of a rectangle of a widget on the screen."""
-    at, ratio = widget.mapToGlobal(rect.topLeft()), widget.devicePixelRatioF()
+def part_of(screen_pixels, widget, rect):
+    """Return the pixels of a rectangle of a widget on the screen."""
+    corner, ratio = widget.mapToGlobal(rect.topLeft()), widget.devicePixelRatioF()
     x, y, wide, high = (
-        round(ratio * length) for length in (at.x(), at.y(), rect.width(), rect.height())
+        round(ratio * length) for length in (corner.x(), corner.y(), rect.width(), rect.height())
     )
-    return seen[y : y + high, x : x + wide]
+    return screen_pixels[y : y + high, x : x + wide]
 
 
 def wrong_with(top, name):
-    """What is wrong with the texts below a widget in one picture of the screen."""
+    """Return the faults of the texts below a widget in one picture of the screen."""
     wrong = []
     image = screen()
     image.save(str(FOLDER / f"{name}.png"))
-    seen = pixels(image)
+    screen_pixels = pixels(image)
     for widget in present(QtGui.QWidget, top):
         icon = isinstance(widget, QtGui.QToolButton) and not widget.icon().isNull()
         text = text_of(widget)
         if widget.objectName() == "canvas" and widget.isVisible():
-            area = part_of(seen, widget, widget.visibleRegion().boundingRect())
+            area = part_of(screen_pixels, widget, widget.visibleRegion().boundingRect())
             if not area.size or contrast(area) < LEAST_CONTRAST:
                 wrong.append(f"{name}: the plot is empty")
         if not (text.strip() or icon) or not widget.isVisible():
@@ -151,10 +155,13 @@ def wrong_with(top, name):
             if needed > widget.width() + 1:
                 wrong.append(f"{what} is cut off: {widget.width()} of {needed}")
         if is_seen(widget):
-            area = part_of(seen, widget, widget.rect())
-            # push buttons are the theme's own; two letters have too few whole pixels to be measured
-            own = not isinstance(widget, QtGui.QPushButton) and (icon or len(text.strip()) > 2)
-            if own and area.size and contrast(area) < LEAST_CONTRAST:
+            area = part_of(screen_pixels, widget, widget.rect())
+            # push buttons follow the theme, and two letters have too few full pixels for a
+            # measurement
+            is_measured = not isinstance(widget, QtGui.QPushButton) and (
+                icon or len(text.strip()) > 2
+            )
+            if is_measured and area.size and contrast(area) < LEAST_CONTRAST:
                 wrong.append(f"{what} has a contrast of {contrast(area):.1f}")
     return wrong
 
@@ -163,37 +170,37 @@ def upright(panel, name, wrong):
     for area in present(QtGui.QScrollArea, Gui.getMainWindow()):
         if area.isAncestorOf(panel) and area.horizontalScrollBar().maximum() > 0:
             over = area.horizontalScrollBar().maximum()
-            if over > MARGIN:
+            if over > MARGIN_PX:
                 wrong.append(f"{name}: is {over} pixels wider than what is seen of it")
 
 
-def room(name, wrong, before):
-    """The window stays on the screen, and the 3D view keeps its room."""
+def room(name, wrong, minimum):
+    """Check that the window stays on the screen and the 3D view keeps its room."""
     window = Gui.getMainWindow()
-    whole = QtGui.QApplication.primaryScreen().geometry()
+    screen_area = QtGui.QApplication.primaryScreen().geometry()
     needed = window.minimumSizeHint()
-    if needed.width() > whole.width() or needed.height() > whole.height():
+    if needed.width() > screen_area.width() or needed.height() > screen_area.height():
         wrong.append(f"{name}: the window needs {needed.width()} x {needed.height()}")
-    if window.width() > whole.width() or window.height() > whole.height():
+    if window.width() > screen_area.width() or window.height() > screen_area.height():
         wrong.append(f"{name}: the window is {window.width()} x {window.height()}")
     wide, high = view_size()
     # FreeCAD's own bars and docks may leave less from the start
     least_wide, least_high = (
-        min(0.25 * most, 0.9 * now)
-        for most, now in zip((whole.width(), whole.height()), before, strict=True)
+        min(0.25 * limit, 0.9 * now)
+        for limit, now in zip((screen_area.width(), screen_area.height()), minimum, strict=True)
     )
     if wide < least_wide or high < least_high:
-        wrong.append(f"{name}: the 3D view has {wide:.0f} x {high:.0f}, before {before}")
+        wrong.append(f"{name}: the 3D view has {wide:.0f} x {high:.0f}, before {minimum}")
 
 
 def view_size():
-    """The size of the 3D view in the pixels that widgets are measured by."""
+    """Return the size of the 3D view in device-independent pixels, like those of widgets."""
     ratio = Gui.getMainWindow().devicePixelRatioF()
     return tuple(length / ratio for length in Gui.activeDocument().activeView().getSize())
 
 
 def scrolled(panel):
-    """The offsets at which all of a panel is seen, page by page."""
+    """Return the scroll offsets that together show the whole panel, page by page."""
     areas = [a for a in present(QtGui.QScrollArea, Gui.getMainWindow()) if a.isAncestorOf(panel)]
     bars = [area.verticalScrollBar() for area in areas if area.verticalScrollBar().maximum() > 0]
     if not bars:
@@ -207,7 +214,7 @@ def scrolled(panel):
 
 
 def cancel():
-    """Close the task panel by its button, so that it takes its preview away."""
+    """Close the task panel by its button, so that it removes its preview."""
     for box in present(QtGui.QDialogButtonBox, Gui.getMainWindow()):
         button = box.button(QtGui.QDialogButtonBox.Cancel)
         if box.isVisible() and button is not None:
@@ -216,8 +223,8 @@ def cancel():
 
 
 def panels():
-    """The panel that was opened just now, once it is there."""
-    end = time.monotonic() + PATIENCE
+    """Return the panel that was just opened, once it exists."""
+    end = time.monotonic() + TIMEOUT_S
     while True:
         idle(0.5)
         names = [
@@ -232,7 +239,7 @@ def panels():
             return names
 
 
-def look_at_panels(theme, wrong, most):
+def look_at_panels(theme, wrong, page_limit):
     for command in PANELS:
         Gui.runCommand(f"RoboticAM_{command}")
         names = panels()
@@ -242,7 +249,7 @@ def look_at_panels(theme, wrong, most):
         panel = names[-1]
         for page in scrolled(panel):
             judge(panel, f"{theme}-{command}-{page}", wrong)
-            if page + 1 >= most:
+            if page + 1 >= page_limit:
                 break
         upright(panel, f"{theme}-{command}", wrong)
         cancel()
@@ -250,7 +257,7 @@ def look_at_panels(theme, wrong, most):
 
 
 def look_at_docks(theme, wrong):
-    before = view_size()
+    original_size = view_size()
     for command in DOCKS:
         Gui.runCommand(f"RoboticAM_{command}")
         idle(1.2)
@@ -264,7 +271,7 @@ def look_at_docks(theme, wrong):
             continue
         for dock in docks:
             judge(dock, f"{theme}-{command}", wrong)
-        room(f"{theme}-{command}", wrong, before)
+        room(f"{theme}-{command}", wrong, original_size)
         for dock in docks:
             dock.close()
         idle(0.3)
@@ -280,14 +287,16 @@ def job():
     from freecad_am import api
 
     document = App.newDocument("Looks")
-    part = document.addObject("Part::Sphere", "Sphere")
-    part.Radius, part.Angle1, part.Angle2 = 45, 0, 90
+    sphere = document.addObject("Part::Sphere", "Sphere")
+    sphere.Radius, sphere.Angle1, sphere.Angle2 = 45, 0, 90
     document.recompute()
     cell = api.make_cell(document, limits="paper")
-    toolpath = api.make_toolpath(document, api.make_feature(document, part, layer_height=15), cell)
+    toolpath = api.make_toolpath(
+        document, api.make_feature(document, sphere, layer_height=15), cell
+    )
     path = api.make_joint_path(document, toolpath, cell)
     api.make_program(document, path)
-    Gui.Selection.addSelection(document.Name, part.Name)
+    Gui.Selection.addSelection(document.Name, sphere.Name)
     idle(0.3)
 
 
@@ -296,21 +305,21 @@ def run():
     try:
         Gui.activateWorkbench("RoboticAMWorkbench")
         window = Gui.getMainWindow()
-        whole = QtGui.QApplication.primaryScreen().geometry()
+        screen_area = QtGui.QApplication.primaryScreen().geometry()
         window.showNormal()
-        window.setGeometry(whole)
+        window.setGeometry(screen_area)
         job()
         for theme, sheet in themes():
             QtGui.QApplication.instance().setStyleSheet(sheet)
             idle(0.5)
             window.setGeometry(
-                whole
-            )  # bars grow while a sheet is set; a window keeps such a height
+                screen_area
+            )  # bars grow while a style sheet is set, and a window keeps such a height
             idle(0.2)
             if "docks" in PARTS:
                 look_at_docks(theme, wrong)
             if "panels" in PARTS:
-                look_at_panels(theme, wrong, PAGES)
+                look_at_panels(theme, wrong, MAX_PAGES)
     except BaseException:
         wrong.append(traceback.format_exc())
     (FOLDER / "looks.json").write_text(json.dumps(wrong, indent=1), encoding="utf-8")

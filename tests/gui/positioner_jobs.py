@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A job for windows: a part of revolution on a positioner, under a torch that a robot carries."""
+"""A job for window tests: a part of revolution on a positioner, under a torch on a robot."""
 
 from freecad_am import api
 
 
 def on_positioner(part, layer_height):
-    """The joint path, of a feature, a cell and a toolpath in the document of a part."""
+    """Return the joint path, with feature, cell and toolpath in the document of a part."""
     doc = part.Document
     feature = api.make_feature(doc, part, layer_height=layer_height, max_from_vertical=10)
     cell = api.make_cell(

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What previews draw, found in the scene."""
+"""Find the drawings of previews in the scene."""
 
 from freecad_am.gui.views.preview import NAME
 
 
 def drawn_by_previews(person, kind):
-    """The nodes of a kind, of Coin, in the order they are drawn; None without a preview."""
+    """Return the Coin nodes of a kind in the order of drawing; None without a preview."""
     from pivy import coin
 
     search = coin.SoSearchAction()

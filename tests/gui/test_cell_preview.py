@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a cell shows machine, platform and nozzle as they are entered, and proposes what suits a machine."""
+"""The panel of a cell shows machine, platform and nozzle while they are entered, and proposes
+values for a machine."""
 
 import threading
 import time
@@ -29,8 +30,8 @@ POINT = "DepositionPoint"
 
 
 def previewed(person):
-    """The poses (n, 4, 4) of what previews draw: platform, nozzle, then the links of the machine, base first; None without
-    a preview."""
+    """Return the poses (n, 4, 4) that previews draw: platform, nozzle, then the links of the
+    machine, base first; None without a preview."""
     nodes = drawn_by_previews(person, "SoMatrixTransform")
     if nodes is None:
         return None
@@ -38,7 +39,7 @@ def previewed(person):
     return np.array(poses).reshape(-1, 4, 4).transpose(0, 2, 1)
 
 
-def told(person, panel, words, seconds=10):
+def wait_for_message(person, panel, words, seconds=10):
     state = person.field(panel, "preview")
     person.until(
         lambda: state.isVisible() and words in state.text(),
@@ -52,7 +53,8 @@ def entered_point(person, panel):
 
 
 def stands_as(person, parameters, toolpath):
-    """Whether the previewed machine stands as PyKDL puts it, the part where it is in the document."""
+    """Return whether the preview shows the machine at PyKDL's pose, and the part at its position in
+    the document."""
     drawn = previewed(person)
     cell = cells.resolve(parameters, np.eye(4) if toolpath is None else toolpath.frame)
     joints = at_rest(cell, resting_point(toolpath, cell.poses.mount))
@@ -62,15 +64,16 @@ def stands_as(person, parameters, toolpath):
     if cell.setup == "tool-on-robot":
         tip = (drawn[2] @ flange @ cell.poses.carried)[:3, 3]
         return np.abs(tip - resting_point(toolpath, cell.poses.mount)).max() < 2e-3
-    part = drawn[2] @ flange @ cell.poses.carried @ frames.inverse(cell.poses.mount)
+    part_frame = drawn[2] @ flange @ cell.poses.carried @ frames.inverse(cell.poses.mount)
     return (
-        np.abs(part - np.eye(4)).max() < 2e-3 and np.abs(drawn[0] - cell.poses.mount).max() < 1e-5
+        np.abs(part_frame - np.eye(4)).max() < 2e-3
+        and np.abs(drawn[0] - cell.poses.mount).max() < 1e-5
     )
 
 
 @pytest.fixture
 def planned(person, hemisphere):
-    """A cell with the toolpath that is cut for it."""
+    """Return a cell with a toolpath planned for it."""
     document = hemisphere.Document
     cell = api.make_cell(document)
     toolpath = api.make_toolpath(
@@ -86,14 +89,14 @@ def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_
     cell, toolpath = planned
     document, steps, path = cell.Document, cell.Document.UndoCount, api.result(toolpath)
     switch = cell.ViewObject.Proxy.switch
-    which, before = (
+    switch_state, picture = (
         switch.whichChild.getValue(),
         cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue(),
     )
     person.look()
     person.double_click(cell)
     panel = person.panel(PANEL)
-    told(person, panel, "with the nozzle upright: q")
+    wait_for_message(person, panel, "with the nozzle upright: q")
     assert switch.whichChild.getValue() == -1
     assert stands_as(person, CellParameters(), path)
     person.look()
@@ -104,17 +107,17 @@ def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_
     hand.enter(panel, "Platform", "30 mm")
     person.until(lambda: stands_as(person, moved, path), "the machine to stand elsewhere", 10)
     hand.enter(panel, f"{POINT}X", "5 m")
-    told(person, panel, "does not reach the part")
+    wait_for_message(person, panel, "does not reach the part")
     hand.enter(panel, "PlatformDiameter", "1 km")
-    told(person, panel, "see the marked field")
+    wait_for_message(person, panel, "see the marked field")
     assert (
         "out of range" in person.field(panel, "PlatformDiameterNote").text()
         and len(previewed(person)) == 0
     )
     person.press("Cancel")
     person.panel_closed()
-    assert previewed(person) is None and switch.whichChild.getValue() == which
-    assert cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue() == before
+    assert previewed(person) is None and switch.whichChild.getValue() == switch_state
+    assert cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue() == picture
     assert (document.UndoCount, cell.Status, api.result(cell)) == (
         steps,
         "up to date",
@@ -123,25 +126,26 @@ def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_
 
 
 def test_a_new_cell_is_seen_at_the_toolpath_that_waits_for_one(person, hemisphere):
-    """That of a document with one toolpath; of two the selected one, and the platform where neither is."""
+    """The preview uses the document's only toolpath, or the selected one of two, or the platform if
+    none is selected."""
     document = hemisphere.Document
     small = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=15))
     panel_of = {"": api.result(small)}
-    for chosen in ("", "large", "neither"):
-        if chosen == "large":
+    for selection in ("", "large", "neither"):
+        if selection == "large":
             large = api.make_toolpath(
                 document, api.make_feature(document, hemisphere, layer_height=4)
             )
             panel_of.update(large=api.result(large), neither=None)
         person.gui.Selection.clearSelection()
-        if chosen == "large":
+        if selection == "large":
             person.gui.Selection.addSelection(large)
         person.click("RoboticAM_Cell")
         panel = person.panel(PANEL)
-        told(person, panel, "with the nozzle upright: q")
+        wait_for_message(person, panel, "with the nozzle upright: q")
         person.until(
-            lambda of=panel_of[chosen]: stands_as(person, cell_of(""), of),
-            f"the machine, {chosen}",
+            lambda toolpath_=panel_of[selection]: stands_as(person, cell_of(""), toolpath_),
+            f"the machine, {selection}",
             10,
         )
         person.press("Cancel")
@@ -150,33 +154,33 @@ def test_a_new_cell_is_seen_at_the_toolpath_that_waits_for_one(person, hemispher
 
 def test_a_toolpath_that_is_made_anew_beside_the_panel_moves_the_machine(person, planned):
     cell, toolpath = planned
-    before = api.result(toolpath)
+    old_result = api.result(toolpath)
     person.double_click(cell)
     panel = person.panel(PANEL)
-    told(person, panel, "with the nozzle upright: q")
-    assert stands_as(person, CellParameters(), before)
+    wait_for_message(person, panel, "with the nozzle upright: q")
+    assert stands_as(person, CellParameters(), old_result)
     cell.Document.Feature.LayerHeight = "20 mm"
     cell.Document.recompute()
-    after = api.result(toolpath)
+    new_result = api.result(toolpath)
     person.until(
-        lambda: stands_as(person, CellParameters(), after),
+        lambda: stands_as(person, CellParameters(), new_result),
         "the machine to stand at the new toolpath",
         10,
     )
-    assert not stands_as(person, CellParameters(), before)
+    assert not stands_as(person, CellParameters(), old_result)
     person.press("Cancel")
     person.panel_closed()
 
 
 def test_without_its_machine_the_nozzle_is_where_the_deposit_ends(person, hand, planned):
     cell, toolpath = planned
-    last = api.result(toolpath).layers[-1].beads[-1]
+    last_bead = api.result(toolpath).layers[-1].beads[-1]
     person.double_click(cell)
     panel = person.panel(PANEL)
-    told(person, panel, "with the nozzle upright: ")
+    wait_for_message(person, panel, "with the nozzle upright: ")
     hand.click(person.field(panel, "PreviewMachine"))
     person.until(lambda: len(previewed(person)) == 2, "the machine to go", 5)
-    np.testing.assert_allclose(previewed(person)[1, :3, 3], last.points[-1], atol=1e-4)
+    np.testing.assert_allclose(previewed(person)[1, :3, 3], last_bead.points[-1], atol=1e-4)
     hand.enter(panel, "PlatformDiameter", "100 mm")
     person.press("Apply")
     assert (
@@ -193,50 +197,58 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)
     note = person.field(panel, f"{POINT}Note")
-    told(person, panel, "FANUC")
+    wait_for_message(person, panel, "FANUC")
     person.until(lambda: stands_as(person, cell_of(""), None), "the default robot at its point", 10)
     assert note.isVisible() and note.text().startswith("Proposed for FANUC")
     hand.enter(panel, "Machine", "kuka-kr16-2")
-    wanted = cell_of("kuka-kr16-2")
+    expected = cell_of("kuka-kr16-2")
     person.until(
-        lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]),
+        lambda: entered_point(person, panel) == list(expected.deposition_point[:3]),
         "what is proposed",
         10,
     )
     assert note.isVisible() and note.text().startswith("Proposed for KUKA KR 16-2")
-    assert person.field(panel, "Branch").currentText() == " ".join(wanted.branch)
-    told(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
-    person.until(lambda: stands_as(person, wanted, None), "the robot at its point", 10)
+    assert person.field(panel, "Branch").currentText() == " ".join(expected.branch)
+    wait_for_message(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
+    person.until(lambda: stands_as(person, expected, None), "the robot at its point", 10)
     person.look()
     person.screenshot("cell_proposed")
     hand.enter(panel, f"{POINT}Z", "1.5 m")
     person.until(lambda: not note.isVisible(), "the note to go with what it was about", 5)
     hand.enter(panel, "Machine", "motoman-ar1440")
-    other = cell_of("motoman-ar1440")
+    other_cell = cell_of("motoman-ar1440")
     person.until(
         lambda: note.isVisible() and note.text().startswith("Kept as entered"),
         "what is kept",
         10,
     )
-    assert f"{other.deposition_point[0]:g} 0 {other.deposition_point[2]:g}" in note.text()
-    assert entered_point(person, panel) == [wanted.deposition_point[0], 0.0, 1500.0]
+    assert f"{other_cell.deposition_point[0]:g} 0 {other_cell.deposition_point[2]:g}" in note.text()
+    assert entered_point(person, panel) == [expected.deposition_point[0], 0.0, 1500.0]
     assert person.field(panel, "Branch").currentText() == " ".join(
-        other.branch
-    )  # nobody has typed another one
+        other_cell.branch
+    )  # the user has typed no other one
     person.press("Ok")
     person.panel_closed()
-    made = api.result(document.Cell)
-    assert made.deposition_point == (wanted.deposition_point[0], 0.0, 1500.0, 0.0, 0.0, 0.0)
-    assert (made.machine, made.branch, document.UndoCount) == (
+    cell_result = api.result(document.Cell)
+    assert cell_result.deposition_point == (
+        expected.deposition_point[0],
+        0.0,
+        1500.0,
+        0.0,
+        0.0,
+        0.0,
+    )
+    assert (cell_result.machine, cell_result.branch, document.UndoCount) == (
         "motoman-ar1440",
-        other.branch,
+        other_cell.branch,
         steps + 1,
     )
 
 
 @pytest.fixture
 def leaning(person, hemisphere):
-    """A toolpath whose beads may lean by 10 deg from the vertical, which takes a positioner under a torch."""
+    """Return a toolpath whose beads may lean by 10 deg from the vertical, which needs a positioner
+    under a torch."""
     document = hemisphere.Document
     feature = api.make_feature(
         document, hemisphere, layer_height=15, chord_error=0.5, max_from_vertical=10
@@ -255,7 +267,8 @@ def choose_torch(person, hand, panel):
 
 @pytest.mark.long
 def test_the_job_at_hand_is_done_in_the_cell_that_is_proposed_for_a_robot(person, hand, leaning):
-    """With its toolpath in the document, a positioner; before, the platform was put where a ball could be laid."""
+    """With its toolpath in the document, the panel proposes a positioner; without one, a platform
+    position that suits a ball."""
     document, steps = leaning.Document, leaning.Document.UndoCount
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)
@@ -264,23 +277,23 @@ def test_the_job_at_hand_is_done_in_the_cell_that_is_proposed_for_a_robot(person
     person.until(lambda: "carries part" in external.text(), "a positioner", 30)
     assert note.isVisible() and note.text().startswith(f"Proposed for the job of {leaning.Label}; ")
     assert person.field(panel, "Branch").currentText() == "auto"
-    told(person, panel, "with the nozzle upright: ")
+    wait_for_message(person, panel, "with the nozzle upright: ")
     person.look()
     person.screenshot("cell_for_job")
-    before = len(person.console())
+    console_length = len(person.console())
     person.press("Ok")
     person.panel_closed()
     cell = document.Cell
     assert (
-        document.UndoCount == steps + 1 and "is now" not in person.console()[before:]
-    )  # all was seen
+        document.UndoCount == steps + 1 and "is now" not in person.console()[console_length:]
+    )  # all is visible
     (positioner,) = EXTERNAL.read(cell.External)
     assert positioner.carries == "part"
     path = api.make_joint_path(document, leaning, cell)
     assert path.Status == "up to date", api.issues(path)
     plain = api.make_cell(
         document, machine=cell.Machine, setup="tool-on-robot"
-    )  # what suits the robot alone
+    )  # the proposal for the robot alone
     assert api.make_joint_path(document, leaning, plain).Status == "infeasible"
 
 
@@ -291,12 +304,12 @@ POSITIONER = "motoman-motopos-d500 at 1615 0 0 0 0 0 carries part"
 def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(
     person, hand, planned, monkeypatch, branch
 ):
-    """Nothing of it where one of its fields holds something of the user's: a positioner with another branch would be a third
-    cell. It goes with the robot that it was proposed for."""
-    asked = []
+    """Nothing is entered if the user has typed into one of the fields, because a positioner with
+    another configuration would be a third cell. The proposal disappears with its robot."""
+    requests = []
 
     def suited(settings):
-        asked.append(settings)
+        requests.append(settings)
         torch = settings.setup == "tool-on-robot"
         return replace(settings, external=POSITIONER, branch="auto") if torch else settings
 
@@ -309,18 +322,18 @@ def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(
     choose_torch(person, hand, panel)
     external = person.field(panel, "External")
     notes = [person.field(panel, f"{name}Note") for name in ("External", "Branch")]
-    left = f"Kept as entered; the job of {label} is feasible with "
-    words = left if branch else f"Proposed for the job of {label}; "
+    kept_message = f"Kept as entered; the job of {label} is feasible with "
+    words = kept_message if branch else f"Proposed for the job of {label}; "
     person.until(
         lambda: all(note.isVisible() and note.text().startswith(words) for note in notes),
         "what it needs",
         60,
     )
-    wanted = cell_of("kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot")
-    last = asked[-1]
-    assert (last.setup, last.deposition_point, last.external) == (
+    expected = cell_of("kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot")
+    last_request = requests[-1]
+    assert (last_request.setup, last_request.deposition_point, last_request.external) == (
         "tool-on-robot",
-        wanted.deposition_point,
+        expected.deposition_point,
         (),
     )
     if branch:
@@ -343,34 +356,35 @@ def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(
 
 @pytest.mark.long
 def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisphere):
-    """With the torch as it is entered; what was proposed for the one before goes, what was typed stays."""
+    """The proposal considers the entered torch; the earlier proposal disappears, and typed values
+    stay."""
     document = hemisphere.Document
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)
     note = person.field(panel, f"{POINT}Note")
     hand.enter(panel, "Machine", "kuka-kr16-2")
-    first = cell_of("kuka-kr16-2")
+    first_cell = cell_of("kuka-kr16-2")
     person.until(
-        lambda: entered_point(person, panel) == list(first.deposition_point[:3]),
+        lambda: entered_point(person, panel) == list(first_cell.deposition_point[:3]),
         "what is proposed",
         10,
     )
     person.choose(panel, "Setup", "tool-on-robot")
-    wanted = cell_of("kuka-kr16-2", setup="tool-on-robot")
+    expected = cell_of("kuka-kr16-2", setup="tool-on-robot")
     person.until(
-        lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]),
+        lambda: entered_point(person, panel) == list(expected.deposition_point[:3]),
         "the platform",
         10,
     )
     assert note.isVisible() and note.text().startswith("Proposed for KUKA KR 16-2")
-    assert person.field(panel, "Branch").currentText() == " ".join(wanted.branch)
-    told(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
-    person.until(lambda: stands_as(person, wanted, None), "the robot over its platform", 10)
+    assert person.field(panel, "Branch").currentText() == " ".join(expected.branch)
+    wait_for_message(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
+    person.until(lambda: stands_as(person, expected, None), "the robot over its platform", 10)
     person.look()
     person.screenshot("cell_tool_on_robot")
     person.choose(panel, "Setup", "part-on-robot")
     person.until(
-        lambda: entered_point(person, panel) == list(first.deposition_point[:3]),
+        lambda: entered_point(person, panel) == list(first_cell.deposition_point[:3]),
         "the first again",
         10,
     )
@@ -384,10 +398,10 @@ def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisph
     assert entered_point(person, panel)[2] == 900.0
     person.press("Ok")
     person.panel_closed()
-    made = api.result(document.Cell)
-    assert (made.setup, made.branch, made.deposition_point[2]) == (
+    cell_result = api.result(document.Cell)
+    assert (cell_result.setup, cell_result.branch, cell_result.deposition_point[2]) == (
         "tool-on-robot",
-        wanted.branch,
+        expected.branch,
         900.0,
     )
 
@@ -395,32 +409,32 @@ def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisph
 def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_proposal(
     person, planned, monkeypatch
 ):
-    def slowly(*asked):
+    def slowly(*request):
         time.sleep(1.0)
-        return cell_of(*asked)
+        return cell_of(*request)
 
     cell = planned[0]
-    monkeypatch.setattr(cell_panel, "cell_of", slowly)  # it goes on when OK is pressed
+    monkeypatch.setattr(cell_panel, "cell_of", slowly)  # it continues when OK is pressed
     api.change(cell, deposition_point=(1000, 0, 700, 0, 0, 0))
     person.double_click(cell)
     panel = person.panel(PANEL)
     person.type(panel, "Machine", "kuka-kr16-2")
-    before = len(person.console())
-    person.press("Ok")  # before anything has followed by itself
+    console_length = len(person.console())
+    person.press("Ok")  # before the panel has updated its proposal
     person.panel_closed()
     line = f"{cell.Label}: Branch is now {' '.join(cell_of('kuka-kr16-2').branch)}. Proposed for KUKA KR 16-2; enter the values"
-    person.until(lambda: line in person.console()[before:], "what nobody saw to be told", 5)
-    assert "Deposition point is now" not in person.console()[before:]
-    proposed, made = cell_of("kuka-kr16-2"), api.result(cell)
-    assert made == replace(proposed, deposition_point=(1000.0, 0.0, 700.0, 0.0, 0.0, 0.0))
+    person.until(lambda: line in person.console()[console_length:], "what nobody saw to be told", 5)
+    assert "Deposition point is now" not in person.console()[console_length:]
+    proposed, cell_result = cell_of("kuka-kr16-2"), api.result(cell)
+    assert cell_result == replace(proposed, deposition_point=(1000.0, 0.0, 700.0, 0.0, 0.0, 0.0))
     person.double_click(cell)
     panel = person.panel(PANEL)
-    told(person, panel, "KUKA")
-    assert not person.field(panel, f"{POINT}Note").isVisible()  # no other machine was chosen
+    wait_for_message(person, panel, "KUKA")
+    assert not person.field(panel, f"{POINT}Note").isVisible()  # the user chose no other machine
     person.press("Cancel")
     person.panel_closed()
     person.until(
-        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
+        lambda: not [thread for thread in threading.enumerate() if thread.name == "Robotic AM"],
         "the threads to end",
         10,
     )
@@ -441,15 +455,16 @@ def test_an_expression_in_a_coordinate_is_left_and_told(person, hand, hemisphere
 
 @pytest.mark.parametrize("ends", ["cancelled", "fails"])
 def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monkeypatch, ends):
-    """The user cancels while OK waits for it, or the work ends in an error of nobody's making."""
+    """The user cancels while OK waits for the proposal, or the work ends with an unexpected
+    error."""
     document = hemisphere.Document
 
-    def proposing(*asked):
+    def proposing(*request):
         raise RuntimeError("broken")
 
-    def slowly(*asked):
+    def slowly(*request):
         time.sleep(1.0)
-        return cell_of(*asked)
+        return cell_of(*request)
 
     def cancelled(work, title):
         raise Cancelled
@@ -457,7 +472,7 @@ def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monke
     if ends == "fails":
         monkeypatch.setattr(cell_panel, "cell_of", proposing)
     else:
-        monkeypatch.setattr(cell_panel, "cell_of", slowly)  # it goes on when OK is pressed
+        monkeypatch.setattr(cell_panel, "cell_of", slowly)  # it continues when OK is pressed
         monkeypatch.setattr(cell_panel, "carry_out", cancelled)
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)
@@ -479,7 +494,8 @@ def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monke
 
 
 def test_urdf_as_external_axes_takes_the_whole_cell_of_a_file(person, hand, planned, tmp_path):
-    """Robot, track and positioner of one file: typed as one word, and its bodies are seen."""
+    """Robot, track and positioner of one file are entered with one word, and their bodies are
+    visible."""
     cell, _ = planned
     text = urdf_cells.whole_cell()
     for link, size in (
@@ -493,7 +509,7 @@ def test_urdf_as_external_axes_takes_the_whole_cell_of_a_file(person, hand, plan
     path.write_text(text, encoding="utf-8")
     person.double_click(cell)
     panel = person.panel(PANEL)
-    told(person, panel, "with the nozzle upright: q")
+    wait_for_message(person, panel, "with the nozzle upright: q")
     hand.enter(panel, "Machine", str(path))
     setup = person.field(panel, "Setup")
     setup.setCurrentIndex(setup.findData("tool-on-robot"))
@@ -501,14 +517,14 @@ def test_urdf_as_external_axes_takes_the_whole_cell_of_a_file(person, hand, plan
     person.until(field.isEnabled, "external axes to be asked for", 5)
     field.setText("urdf")
     machine, mechanisms = cell_values(Reference(str(path)))
-    wanted = machine, EXTERNAL.text(mechanisms)
+    expected = machine, EXTERNAL.text(mechanisms)
     person.until(
-        lambda: person.field(panel, "External").text() == wanted[1],
+        lambda: person.field(panel, "External").text() == expected[1],
         "track and positioner to be entered",
         10,
     )
-    assert person.field(panel, "Machine").currentText() == wanted[0]
-    assert "track" in wanted[1] and "positioner" in wanted[1]
+    assert person.field(panel, "Machine").currentText() == expected[0]
+    assert "track" in expected[1] and "positioner" in expected[1]
     person.until(
         lambda: (drawn := previewed(person)) is not None and len(drawn) == 9 + 3,
         "their bodies to be seen",

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faces and edges that FreeCAD numbers anew: the panel of their feature tells it, and OK confirms them."""
+"""The panel of a feature reports faces and edges that FreeCAD has renumbered, and OK confirms
+them."""
 
 import random
 
@@ -34,7 +35,7 @@ def curves(doc):
     return feature, "Repeat", "2"
 
 
-def turned(doc):
+def make_revolution(doc):
     block, feature, _, name, _ = axis_case(doc, None)
     block.Shape = in_another_order(block.Shape, name, random.Random(2))[0]
     return feature, "LayerHeight", "8 mm"
@@ -45,7 +46,7 @@ def turned(doc):
     [
         (cladding, "CladdingFeature", "face"),
         (curves, "CurvesFeature", "edge"),
-        (turned, "RevolutionFeature", "edge"),
+        (make_revolution, "RevolutionFeature", "edge"),
     ],
 )
 def test_what_is_numbered_anew_is_confirmed_by_ok(person, made, panel, what):
@@ -59,18 +60,18 @@ def test_what_is_numbered_anew_is_confirmed_by_ok(person, made, panel, what):
 
     assert warned() and feature.Status == "up to date"
     person.double_click(feature)
-    shown = person.panel(f"RoboticAM_{panel}")
+    panel_shown = person.panel(f"RoboticAM_{panel}")
     person.until(
-        lambda: f"is not the selected {what}" in person.field(shown, "findings").text(),
+        lambda: f"is not the selected {what}" in person.field(panel_shown, "findings").text(),
         "the warning",
     )
     person.screenshot(f"{panel}_changed")
-    person.type(shown, name, value)
+    person.type(panel_shown, name, value)
     person.press("Ok")
     person.panel_closed()
     assert (
         getattr(feature, name) == App.Units.Quantity(value) and warned()
-    )  # something else was changed
+    )  # the user changed another value
     person.double_click(feature)
     person.panel(f"RoboticAM_{panel}")
     person.press("Ok")

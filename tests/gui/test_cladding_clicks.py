@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cladding by clicks: faces are picked, previewed and covered."""
+"""Cladding by clicks: faces are selected, previewed and covered."""
 
 import math
 
@@ -24,8 +24,8 @@ def test_the_panel_previews_and_covers_a_face(person):
     person.select(block, "Face6")
     person.click("RoboticAM_Cladding")
     panel = person.panel("RoboticAM_CladdingFeature")
-    told = person.field(panel, "preview")
-    person.until(lambda: "1 face, 12 cm²" in told.text(), "the preview", 30)
+    preview_text = person.field(panel, "preview")
+    person.until(lambda: "1 face, 12 cm²" in preview_text.text(), "the preview", 30)
     person.type(panel, "Layers", "2")
     person.screenshot("cladding_panel")
     person.press("Ok")
@@ -36,12 +36,13 @@ def test_the_panel_previews_and_covers_a_face(person):
     assert len(api.result(api.make_toolpath(doc, feature)).layers) == 2
 
 
-def on_screen(obj):
-    """The triangles of an object as FreeCAD draws it: (m, 3, 3), each with its corners in order of their numbers."""
+def drawn_triangles(obj):
+    """Return the triangles of an object as FreeCAD draws it: (m, 3, 3), each with its corners in
+    order of their numbers."""
     search = coin.SoSearchAction()
     search.setType(coin.SoCoordinate3.getClassTypeId())
     search.apply(obj.ViewObject.RootNode)
-    points = np.array([tuple(one) for one in search.getPath().getTail().point.getValues()])
+    points = np.array([tuple(vertex) for vertex in search.getPath().getTail().point.getValues()])
     search.reset()
     search.setType(coin.SoIndexedFaceSet.getClassTypeId())
     search.setSearchingAll(True)
@@ -53,23 +54,27 @@ def on_screen(obj):
 
 
 def test_a_bent_face_is_tinted_by_the_triangles_that_are_on_screen(person):
-    """Others would lie in front of them in some places and behind them in others."""
+    """Other triangles would be partly in front of the drawn ones and partly behind them."""
     doc = App.newDocument("Cladding")
-    part = doc.addObject("Part::Feature", "Part")
-    part.Shape = Part.makeTorus(60, 25).cut(
+    feature = doc.addObject("Part::Feature", "Part")
+    feature.Shape = Part.makeTorus(60, 25).cut(
         Part.makeBox(200, 200, 100, App.Vector(-100, -100, -100))
     )
     doc.recompute()
     person.look()
-    face = max(range(len(part.Shape.Faces)), key=lambda k: part.Shape.Faces[k].Area)
-    points, corners = face_mesh(snapshot_of(part), [f"Face{face + 1}"])
+    face = max(range(len(feature.Shape.Faces)), key=lambda k: feature.Shape.Faces[k].Area)
+    points, corners = face_mesh(snapshot_of(feature), [f"Face{face + 1}"])
     assert len(corners) > 100
-    seen = {tuple(sorted(map(tuple, np.round(one, 3)))) for one in on_screen(part)}
-    assert {tuple(sorted(map(tuple, np.round(one, 3)))) for one in points[corners]} <= seen
+    drawn = {
+        tuple(sorted(map(tuple, np.round(triangle, 3)))) for triangle in drawn_triangles(feature)
+    }
+    assert {
+        tuple(sorted(map(tuple, np.round(corner_set, 3)))) for corner_set in points[corners]
+    } <= drawn
     area = (
         0.5
         * np.linalg.norm(
             np.cross(*np.diff(points[corners], axis=1).transpose(1, 0, 2)), axis=1
         ).sum()
     )
-    assert math.isclose(area, part.Shape.Faces[face].Area, rel_tol=0.02)  # all of it
+    assert math.isclose(area, feature.Shape.Faces[face].Area, rel_tol=0.02)  # the whole face

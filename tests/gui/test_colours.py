@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The colour ramp can be read: lightness rises evenly, also for eyes that see no hue."""
+"""The colour ramp is readable: lightness rises evenly, also for colour-blind users."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from freecad_am.gui import colours
 
 
 def lightness(rgb):
-    """CIE L* of sRGB colours 0..1."""
+    """Return CIE L* of sRGB colours 0..1."""
     linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
     y = linear @ [0.2126, 0.7152, 0.0722]
     return np.where(y > 216 / 24389, 116 * np.cbrt(y) - 16, y * 24389 / 27)
@@ -26,10 +26,10 @@ def test_shares_outside_are_the_ends():
     assert np.array_equal(colours.ramp([-1.0, 2.0]), ends)
 
 
-def contrast(first, second):
-    """Of two QColors, as WCAG 2 has it."""
+def contrast(foreground, background):
+    """Return the contrast of two QColors according to WCAG 2."""
     lights = []
-    for colour in (first, second):
+    for colour in (foreground, background):
         rgb = np.array([colour.redF(), colour.greenF(), colour.blueF()])
         linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
         lights.append(float(linear @ [0.2126, 0.7152, 0.0722]))
@@ -37,7 +37,7 @@ def contrast(first, second):
 
 
 def test_texts_follow_the_theme_of_the_window(person):
-    """Those of a panel that is open too, and back again."""
+    """Texts follow the theme in both directions, also in an open panel."""
     application = person.widgets.QApplication.instance()
     label = person.widgets.QLabel("wrong", person.window)
     dark = "QWidget { color: #d2d8e1; background-color: #232932; }"

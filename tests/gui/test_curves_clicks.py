@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves as beads by clicks: a wire, and a table of points that was opened."""
+"""Curves as beads by clicks: a wire, and an opened table of points."""
 
 import FreeCAD as App
 import Part
@@ -20,8 +20,8 @@ def test_the_panel_previews_and_makes_a_feature_of_a_wire(person):
     person.select(wire)
     person.click("RoboticAM_Curves")
     panel = person.panel("RoboticAM_CurvesFeature")
-    told = person.field(panel, "preview")
-    person.until(lambda: "1 curves, 50 mm in all" in told.text(), "the preview", 30)
+    preview_text = person.field(panel, "preview")
+    person.until(lambda: "1 curves, 50 mm in all" in preview_text.text(), "the preview", 30)
     person.type(panel, "Repeat", "3")
     person.screenshot("curves_panel")
     person.press("Ok")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shape and axis of a part of revolution by clicks: bodies, features, links and what is nested, in the tree and the view."""
+"""Shape and axis of a part of revolution by clicks: bodies, features, links and nested objects, in
+the tree and the view."""
 
 import FreeCAD as App
 import Mesh
@@ -15,7 +16,8 @@ PANEL = "RoboticAM_RevolutionFeature"
 
 @pytest.fixture
 def scene(person):
-    """A cone of PartDesign, within a part that is moved and turned, with a link to it, a mesh, a profile and a box."""
+    """Return a cone of PartDesign in a moved and rotated part, with a link to it, a mesh, a profile
+    and a box."""
     doc = App.newDocument("Inputs")
     _, body = nested_cone(doc, V(60, -20, 5), 30)
     link = doc.addObject("App::Link", "Link")
@@ -28,7 +30,7 @@ def scene(person):
     profile.Placement.Rotation = App.Rotation(V(1, 0, 0), 90)  # upright
     box = doc.addObject("Part::Box", "Box")
     box.Length, box.Width, box.Height = 20, 30, 40
-    box.Placement.Base = V(-20, 0, -50)  # an edge of it is on the z axis
+    box.Placement.Base = V(-20, 0, -50)  # one of its edges is on the z axis
     doc.recompute()
     mesh.Placement.Base = V(-60, 60, 0)
     for dock in person.present(person.widgets.QDockWidget):
@@ -41,8 +43,9 @@ def scene(person):
     return doc
 
 
-def pixel_of(person, hand, wanted, room=0):
-    """A place of the screen where the 3D view tells what is wanted, sought in a grid, and around it within `room`."""
+def pixel_of(person, hand, is_wanted, room=0):
+    """Return a position on the screen where the 3D view reports the wanted element, and also around
+    it within `room`, from a grid search."""
     view = person.gui.activeDocument().activeView()
     width, height = view.getSize()
     for step in (16, 7, 3):
@@ -50,7 +53,7 @@ def pixel_of(person, hand, wanted, room=0):
             for x in range(8, width - 8, step):
                 around = ((0, 0), (room, 0), (-room, 0), (0, room), (0, -room))[: 5 if room else 1]
                 infos = (view.getObjectInfo((x + dx, y + dy)) for dx, dy in around)
-                if all(info and wanted(info) for info in infos):
+                if all(info and is_wanted(info) for info in infos):
                     where = hand.corner(view) + person.core.QPoint(x, height - 1 - y)
                     if view.graphicsView().isAncestorOf(
                         person.widgets.QApplication.widgetAt(where)
@@ -65,7 +68,7 @@ def use(person, hand, panel, name):
 
 
 def turn_to(person, hand, title):
-    """Click a tab beside the 3D view: FreeCAD shows the tree or the panel."""
+    """Click a tab next to the 3D view: FreeCAD shows the tree or the panel."""
     for bar in person.present(person.widgets.QTabBar):
         for k in range(bar.count() if bar.isVisible() else 0):
             if bar.tabText(k) == title:
@@ -74,10 +77,10 @@ def turn_to(person, hand, title):
                 return
 
 
-def click_tree(person, hand, label, *held):
-    """Click in the tree, beside which the panel stays open, and come back to the panel."""
+def click_tree(person, hand, label, *keys):
+    """Click in the tree while the panel stays open, and return to the panel."""
     turn_to(person, hand, "Model")
-    hand.click_tree(label, *held)
+    hand.click_tree(label, *keys)
     turn_to(person, hand, "Tasks")
 
 
@@ -88,7 +91,7 @@ def open_panel(person, hand):
     return panel
 
 
-def done(person, hand):
+def press_ok(person, hand):
     person.press("Ok")
     person.until(lambda: not person.gui.Control.activeDialog(), "the feature to be made", 30)
 
@@ -98,13 +101,11 @@ def test_a_face_clicked_in_an_assembly_is_a_face_of_its_body(person, hand, scene
     scene.Link.ViewObject.hide()
     scene.Box.ViewObject.hide()
 
-    def on_body(info):
+    def is_on_body(info):
         return info["Object"] in ("Body", "Cone") and info["Component"].startswith("Face")
 
-    for _ in range(
-        3
-    ):  # where the view still moved, as beside a panel that comes up, a person clicks again
-        hand.at(pixel_of(person, hand, on_body, 6))
+    for _ in range(3):  # if the view was still moving, as when a panel opens, a person clicks again
+        hand.at(pixel_of(person, hand, is_on_body, 6))
         person.idle(0.5)
         if person.gui.Selection.getSelectionEx(scene.Name, 0):
             break
@@ -112,13 +113,13 @@ def test_a_face_clicked_in_an_assembly_is_a_face_of_its_body(person, hand, scene
     assert picked.Object.Name == "Outer"
     use(person, hand, panel, "UseSource")
     assert person.field(panel, "Source").text().startswith("Body Face")
-    done(person, hand)
+    press_ok(person, hand)
     owner, names = scene.Feature.Source
     assert owner == scene.Body and len(names) == 1
     path = picked.SubElementNames[0]
-    shown = picked.Object.getSubObject(path)
-    own = scene.Body.Shape.getElement(names[0])
-    assert abs(own.Area - shown.Area) < 1e-9
+    global_face = picked.Object.getSubObject(path)
+    own_face = scene.Body.Shape.getElement(names[0])
+    assert abs(own_face.Area - global_face.Area) < 1e-9
 
 
 def test_a_link_clicked_in_the_tree_is_deposited_where_it_stands(person, hand, scene):
@@ -126,7 +127,7 @@ def test_a_link_clicked_in_the_tree_is_deposited_where_it_stands(person, hand, s
     click_tree(person, hand, "Link")
     use(person, hand, panel, "UseSource")
     assert person.field(panel, "Source").text() == "Link"
-    done(person, hand)
+    press_ok(person, hand)
     wall = api.result(scene.Feature)
     axis = scene.Link.Placement.Rotation.multVec(V(0, 0, 1))
     assert scene.Feature.Source[0] == scene.Link and (V(*wall.frame[:3, 2]) - axis).Length < 1e-7
@@ -146,20 +147,23 @@ def test_an_edge_clicked_in_the_view_is_the_axis(person, hand, scene):
     ]
 
     def in_its_middle(info):
-        there = V(info["x"], info["y"], info["z"])  # far from vertices, which are taken first
+        position = V(info["x"], info["y"], info["z"])  # far from vertices, which have priority
         return (info["Object"], info["Component"]) == ("Box", edge) and (
-            there - V(0, 0, -30)
+            position - V(0, 0, -30)
         ).Length < 8.0
 
     for _ in range(3):
         person.gui.Selection.clearSelection()
-        hand.at(pixel_of(person, hand, in_its_middle, room=2))  # beside the edge the face is taken
+        # next to the edge, the click would select the face
+        hand.at(pixel_of(person, hand, in_its_middle, room=2))
         person.idle(0.5)
-        if [one.SubElementNames for one in person.gui.Selection.getSelectionEx()] == [(edge,)]:
+        if [selected.SubElementNames for selected in person.gui.Selection.getSelectionEx()] == [
+            (edge,)
+        ]:
             break
     use(person, hand, panel, "UseAxis")
     assert person.field(panel, "Axis").text() == f"Box {edge}"
-    done(person, hand)
+    press_ok(person, hand)
     assert scene.Feature.Axis == (scene.Box, [edge]) and scene.Feature.Status == "up to date"
     wall = api.result(scene.Feature)
     assert abs(abs(wall.frame[2, 2]) - 1.0) < 1e-9 and V(*wall.frame[:2, 3], 0).Length < 1e-9
@@ -194,7 +198,7 @@ def test_an_axis_is_taken_away_again(person, hand, scene):
     )
     assert person.field(panel, "Axis").text() == "Profile H_Axis"
     person.field(panel, "ClearAxis").click()
-    done(person, hand)
+    press_ok(person, hand)
     assert not feature.Axis and feature.Status == "up to date"
     scene.undo()
     assert feature.Axis[0] == sketch
@@ -215,7 +219,8 @@ def test_what_cannot_be_taken_is_told_and_what_was_taken_stays(person, hand, sce
         use(person, hand, panel, "UseSource")
         assert words in person.panel_error(panel) and person.field(panel, "Source").text() == "Body"
     person.gui.Selection.clearSelection()
-    person.field(panel, "UseSource").click()  # nothing is selected: the next click is taken
+    # with nothing selected, the panel takes the next click
+    person.field(panel, "UseSource").click()
     assert person.field(panel, "UseSource").isChecked()
     click_tree(person, hand, "Link")
     person.idle(0.2)

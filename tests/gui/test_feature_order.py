@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Several features in the panel of a toolpath: those selected are taken, their order is changed by clicks."""
+"""Several features in the panel of a toolpath: the panel takes the selected ones, and clicks change
+their order."""
 
 import FreeCAD as App
 import FreeCADGui
@@ -10,18 +11,18 @@ from freecad_am import api
 pytestmark = pytest.mark.usefixtures("person")
 
 
-def feature(doc, name, *place):
-    part = doc.addObject("Part::Box", name)
-    part.Length, part.Width, part.Height = 20, 20, 10
-    part.Placement.Base = App.Vector(*place)
+def feature(doc, name, *position):
+    box = doc.addObject("Part::Box", name)
+    box.Length, box.Width, box.Height = 20, 20, 10
+    box.Placement.Base = App.Vector(*position)
     doc.recompute()
     return api.make_solid_feature(
-        doc, part, label=f"{name} feature", layer_height=5, chord_error=0.2
+        doc, box, label=f"{name} feature", layer_height=5, chord_error=0.2
     )
 
 
 def labels(toolpath):
-    return [one.Source[0].Name for one in (toolpath.Feature, *toolpath.Further)]
+    return [feature_.Source[0].Name for feature_ in (toolpath.Feature, *toolpath.Further)]
 
 
 def listed(panel, person):
@@ -36,25 +37,25 @@ def press(person, panel, name):
 
 def test_selected_features_are_deposited_in_an_order_that_clicks_change(person):
     doc = App.newDocument("Order")
-    first, second, third = (
+    first_feature, second_feature, third_feature = (
         feature(doc, "A", 0, 0, 0),
         feature(doc, "B", 40, 0, 0),
         feature(doc, "C", 80, 0, 0),
     )
-    person.select(first)
-    FreeCADGui.Selection.addSelection(third)
+    person.select(first_feature)
+    FreeCADGui.Selection.addSelection(third_feature)
     person.click("RoboticAM_Toolpath")
     panel = person.panel("RoboticAM_Toolpath")
     assert listed(panel, person) == ["C feature"]
-    place = panel
-    while place.objectName() != "qt_scrollarea_viewport":
-        place = place.parentWidget()
-    # four buttons in a row made it wider
+    widget = panel
+    while widget.objectName() != "qt_scrollarea_viewport":
+        widget = widget.parentWidget()
+    # four buttons in a row would make the panel wider
     person.until(
-        lambda: panel.mapTo(place, panel.rect().topRight()).x() < place.width(),
+        lambda: panel.mapTo(widget, panel.rect().topRight()).x() < widget.width(),
         "a panel that is not cut off",
     )
-    press(person, panel, "AddFeature")  # what is selected is there; nothing more
+    press(person, panel, "AddFeature")  # only the selected ones are listed
     FreeCADGui.Selection.clearSelection()
     press(person, panel, "AddFeature")
     assert listed(panel, person) == ["C feature", "B feature"]
@@ -89,5 +90,5 @@ def test_selected_features_are_deposited_in_an_order_that_clicks_change(person):
     )
     doc.undo()
     assert labels(toolpath) == ["B", "A", "C"] and toolpath.Sequence == "feature"
-    assert not any(part.ViewObject.Visibility for part in (doc.A, doc.B, doc.C))
-    assert second.Status == "up to date"
+    assert not any(box.ViewObject.Visibility for box in (doc.A, doc.B, doc.C))
+    assert second_feature.Status == "up to date"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a part of revolution shows meridian, axis and layers before anything is made, and leaves nothing of them."""
+"""The panel of a part of revolution previews meridian, axis and layers, and removes them when it
+closes."""
 
 import numpy as np
 
@@ -11,7 +12,7 @@ ORANGE = (245, 120, 0)
 
 
 def previewed(person):
-    """The nodes of previews in the 3D view."""
+    """Return the nodes of previews in the 3D view."""
     from pivy import coin
 
     search = coin.SoSearchAction()
@@ -22,7 +23,7 @@ def previewed(person):
     return search.getPaths().getLength()
 
 
-def told(person, panel, words, seconds=10):
+def wait_for_message(person, panel, words, seconds=10):
     state = person.field(panel, "preview")
     person.until(
         lambda: state.isVisible() and words in state.text(),
@@ -40,15 +41,15 @@ def test_layers_are_seen_before_they_are_made_and_go_with_the_panel(person, hand
     person.click("RoboticAM_Feature")
     panel = person.panel(PANEL)
     length = 45.0 * np.pi / 2.0
-    told(person, panel, f"Layers: 71, along {length:.4g} mm")
+    wait_for_message(person, panel, f"Layers: 71, along {length:.4g} mm")
     assert previewed(person) == 1
-    many = person.screen_pixels(ORANGE)
-    assert many > bare + 1000
+    preview_pixels = person.screen_pixels(ORANGE)
+    assert preview_pixels > bare + 1000
     hand.enter(panel, "LayerHeight", "10 mm")
-    told(person, panel, "Layers: 8, along")
+    wait_for_message(person, panel, "Layers: 8, along")
     person.screenshot("feature_preview")
-    few = person.screen_pixels(ORANGE)
-    assert bare + 200 < few < many
+    fewer_pixels = person.screen_pixels(ORANGE)
+    assert bare + 200 < fewer_pixels < preview_pixels
     hand.enter(panel, "LayerHeight", "100 mm")
     note = person.field(panel, "LayerHeightNote")
     person.until(
@@ -56,11 +57,11 @@ def test_layers_are_seen_before_they_are_made_and_go_with_the_panel(person, hand
         "what is wrong",
         10,
     )
-    told(person, panel, "see the marked field")
+    wait_for_message(person, panel, "see the marked field")
     assert person.screen_pixels(ORANGE) <= bare + 20
     person.choose(panel, "Path", "spiral")
     hand.enter(panel, "LayerHeight", "5 mm")
-    told(person, panel, "About 1")
+    wait_for_message(person, panel, "About 1")
     person.press("Cancel")
     person.panel_closed()
     person.idle(0.3)
@@ -72,17 +73,17 @@ def test_what_a_feature_draws_itself_stands_back_while_it_is_changed(person, hem
     feature = api.make_feature(hemisphere.Document, hemisphere, layer_height=15)
     person.double_click(feature)
     panel = person.panel(PANEL)
-    own = feature.ViewObject.Proxy.revolved
-    told(person, panel, "Layers: 5, along")
-    assert own.switch.whichChild.getValue() == -1 and previewed(person) == 1
+    own_drawing = feature.ViewObject.Proxy.revolved
+    wait_for_message(person, panel, "Layers: 5, along")
+    assert own_drawing.switch.whichChild.getValue() == -1 and previewed(person) == 1
     person.type(panel, "LayerHeight", "9 mm")
-    told(person, panel, "Layers: 8, along")
+    wait_for_message(person, panel, "Layers: 8, along")
     assert feature.LayerHeight.Value == 15
     person.press("Apply")
-    assert feature.LayerHeight.Value == 9 and own.switch.whichChild.getValue() == -1
+    assert feature.LayerHeight.Value == 9 and own_drawing.switch.whichChild.getValue() == -1
     person.press("Ok")
     person.panel_closed()
-    assert own.switch.whichChild.getValue() == -3 and previewed(person) == 0
+    assert own_drawing.switch.whichChild.getValue() == -3 and previewed(person) == 0
 
 
 def test_without_a_shape_the_panel_says_so_and_waits(person, hand, hemisphere):
@@ -91,17 +92,17 @@ def test_without_a_shape_the_panel_says_so_and_waits(person, hand, hemisphere):
     person.gui.Selection.clearSelection()
     person.click("RoboticAM_Feature")
     panel = person.panel(PANEL)
-    told(person, panel, "Select the shape to deposit")
+    wait_for_message(person, panel, "Select the shape to deposit")
     assert not person.field(panel, "error").isVisible()
     person.select(block)
     hand.click(person.field(panel, "UseSource"))
-    told(person, panel, "see the marked field")
+    wait_for_message(person, panel, "see the marked field")
     assert "Block" in person.panel_error(panel) or "revolution" in person.panel_error(panel), (
         person.panel_error(panel)
     )
     person.select(hemisphere)
     hand.click(person.field(panel, "UseSource"))
-    told(person, panel, "Layers: 71")
+    wait_for_message(person, panel, "Layers: 71")
     assert person.panel_error(panel) == ""
     person.press("Ok")
     person.panel_closed()

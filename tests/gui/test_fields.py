@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is typed into a panel is what is used, or is refused; panels stay with the document they were opened in."""
+"""A panel uses or rejects what is typed into it, and stays with the document in which it was
+opened."""
 
 import FreeCAD as App
 import pytest
@@ -30,12 +31,12 @@ STAGES = (
     Program,
     Inspection,
 )
-# numbers that have no unit: shares, values of an input, what an optimiser stops at
-PURE = {"min_condition", "tolerance", "cooling_zero"}
+# numbers without a unit: shares, values of an input, the limit of an optimiser
+UNITLESS_KEYS = {"min_condition", "tolerance", "cooling_zero"}
 
 
 def typed(person, field, text):
-    """Type over what stands in the field, key by key, and leave it."""
+    """Replace the text of the field, key by key, and leave it."""
     field.line.setFocus()
     person.idle(0.05)
     field.line.selectAll()
@@ -43,15 +44,15 @@ def typed(person, field, text):
         for kind in (person.core.QEvent.KeyPress, person.core.QEvent.KeyRelease):
             event = person.widgets.QKeyEvent(kind, 0, person.core.Qt.NoModifier, letter)
             person.widgets.QApplication.sendEvent(field.box, event)
-    other = field.box.window().findChild(person.widgets.QLineEdit, "elsewhere")
-    other.setFocus()
+    other_field = field.box.window().findChild(person.widgets.QLineEdit, "elsewhere")
+    other_field.setFocus()
     person.idle(0.05)
     assert not field.box.hasFocus()
 
 
 @pytest.fixture
 def window(person):
-    """A dialog with the focus, and a second field to go to."""
+    """Return a dialog with the focus, and a second field."""
     dialog = person.widgets.QDialog(person.window)
     column = person.widgets.QVBoxLayout(dialog)
     elsewhere = person.widgets.QLineEdit()
@@ -83,7 +84,7 @@ def test_what_is_typed_is_what_is_read(person, window):
     field.box.setFocus()
     person.idle(0.05)
     field.box.stepUp()
-    assert field.read() == 3.0  # stepped from what was typed
+    assert field.read() == 3.0  # stepping starts from the typed value
 
 
 def test_a_speed_is_typed_in_any_unit(person, window):
@@ -118,13 +119,13 @@ def test_another_number_is_shown_in_a_plain_line_and_read_as_it_is(person):
 
 
 def test_every_field_shows_another_value_and_an_expression(person):
-    known = {row.key: row for row in rows(CellParameters)}
-    field = fields.make(known["platform_diameter"], 120.0)
+    field_rows = {row.key: row for row in rows(CellParameters)}
+    field = fields.make(field_rows["platform_diameter"], 120.0)
     field.show(30.5)
     assert (field.value, field.changed) == (30.5, True)
     field.show("=Sheet.height")
     assert field.value == "=Sheet.height"
-    text = fields.make(known["platform"], 120.0)
+    text = fields.make(field_rows["platform"], 120.0)
     text.show(30.5)
     assert (text.value, text.changed) == ("30.5 mm", True)
 
@@ -149,7 +150,7 @@ def test_a_number_too_long_for_its_field_shows_its_first_digits(person, window):
     assert (
         field.line.fontMetrics().boundingRect(field.line.text()).width() > field.line.width() - 30
     )
-    assert field.line.cursorPosition() == 0  # the end that is seen is that of the cursor
+    assert field.line.cursorPosition() == 0  # the visible end is that of the cursor
     typed(person, field, "654321.5 mm")
     assert field.line.cursorPosition() == 0 and field.read() == 654321.5
 
@@ -173,25 +174,27 @@ def test_what_is_wrong_is_told_while_typing_and_only_as_long_as_it_is_there(pers
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
     note = person.field(panel, "PlatformDiameterNote")
-    for text, told in (
+    for text, message in (
         ("abc", "'abc' is not understood"),
         ("-5", "-5 mm is out of range"),
         ("1e9", "1e+09 mm is out"),
     ):
         person.type(panel, "PlatformDiameter", text)
-        person.until(lambda told=told: note.isVisible() and note.text().startswith(told), told, 5)
-    person.press("Ok")  # refused
+        person.until(
+            lambda message=message: note.isVisible() and note.text().startswith(message), message, 5
+        )
+    person.press("Ok")  # rejected
     assert note.isVisible() and not any(
         obj.TypeId.startswith("App::FeatureP") for obj in hemisphere.Document.Objects
     )
     below = person.field(panel, "Mount")
-    person.idle(0.5)  # the panel makes room for what is told at its top
+    person.idle(0.5)  # the panel makes room for the message at its top
     height = below.mapTo(panel, person.core.QPoint(0, 0)).y()
     person.type(panel, "PlatformDiameter", "100 mm")
     person.until(lambda: not note.isVisible(), "the error to go with what was wrong", 5)
     assert (
         below.mapTo(panel, person.core.QPoint(0, 0)).y() == height
-    )  # a click on the next field does not miss it
+    )  # a click on the next field hits it
     person.press("Cancel")
     person.panel_closed()
 
@@ -221,7 +224,7 @@ def test_an_error_is_told_with_the_name_in_the_panel_and_its_group_opens(person,
 
 
 def test_ramps_at_starts_and_ends_of_beads_are_typed(person, hemisphere):
-    """What is typed into their fields is what beads are planned with."""
+    """The typed values are those of the planned beads."""
     api.make_feature(hemisphere.Document, hemisphere, layer_height=10)
     person.click("RoboticAM_Toolpath")
     panel = person.panel("RoboticAM_Toolpath")
@@ -254,9 +257,9 @@ def test_ramps_at_starts_and_ends_of_beads_are_typed(person, hemisphere):
         person.type(panel, name, text)
     person.press("Ok")
     person.panel_closed()
-    made = hemisphere.Document.Toolpath
-    assert (made.StartRamp.Value, made.EndRamp.Value) == (1.0, 0.8)
-    process = made.Proxy.parameters(made, ProcessParameters)
+    toolpath = hemisphere.Document.Toolpath
+    assert (toolpath.StartRamp.Value, toolpath.EndRamp.Value) == (1.0, 0.8)
+    process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
     assert (process.start.ramp, process.start.travel_speed, process.end.ramp) == (
         1.0,
         3.0,
@@ -267,42 +270,42 @@ def test_ramps_at_starts_and_ends_of_beads_are_typed(person, hemisphere):
 def test_a_panel_stays_with_its_document(person, hemisphere):
     doc = hemisphere.Document
     feature = api.make_feature(doc, hemisphere, layer_height=10)
-    other = App.newDocument("Other")
-    part = other.addObject("Part::Sphere", "Sphere")
-    other.recompute()
-    assert api.make_feature(other, part, layer_height=10).Name == feature.Name
+    other_document = App.newDocument("Other")
+    sphere = other_document.addObject("Part::Sphere", "Sphere")
+    other_document.recompute()
+    assert api.make_feature(other_document, sphere, layer_height=10).Name == feature.Name
     App.setActiveDocument(doc.Name)
     person.double_click(feature)
-    App.setActiveDocument(other.Name)
+    App.setActiveDocument(other_document.Name)
     person.type(person.panel("RoboticAM_RevolutionFeature"), "LayerHeight", "5 mm")
     person.press("Ok")
     person.panel_closed()
-    assert (feature.LayerHeight.Value, other.Feature.LayerHeight.Value) == (5.0, 10.0)
+    assert (feature.LayerHeight.Value, other_document.Feature.LayerHeight.Value) == (5.0, 10.0)
 
     App.setActiveDocument(doc.Name)
     person.click("RoboticAM_Cell")
-    App.setActiveDocument(other.Name)
+    App.setActiveDocument(other_document.Name)
     person.press("Ok")
     person.panel_closed()
-    assert doc.getObject("Cell") is not None and other.getObject("Cell") is None
+    assert doc.getObject("Cell") is not None and other_document.getObject("Cell") is None
 
 
 @pytest.mark.parametrize("tool", ["NewJob", "Cell", "Feature", "Toolpath", "Inspect"])
 @pytest.mark.always("NewJob", "Toolpath", "Inspect")
 def test_a_panel_goes_with_its_document_alone(person, hemisphere, tool):
     api.make_feature(hemisphere.Document, hemisphere, layer_height=10)
-    other = App.newDocument("Other")
+    other_document = App.newDocument("Other")
     App.setActiveDocument(hemisphere.Document.Name)
     person.select(hemisphere)
     person.click(f"RoboticAM_{tool}")
     assert person.gui.Control.activeDialog()
-    App.closeDocument(other.Name)
+    App.closeDocument(other_document.Name)
     person.idle(0.3)
     assert person.gui.Control.activeDialog()
     App.newDocument("Third")
     App.closeDocument(hemisphere.Document.Name)
     person.panel_closed()
-    # the one that is opened next is another one
+    # the next document is a different one
     App.newDocument("Fourth")
     App.closeDocument("Third")
     person.click("RoboticAM_Cell")
@@ -334,7 +337,7 @@ def test_long_names_are_seen_from_their_start(person, hemisphere):
 
 
 def test_every_number_has_its_unit(person):
-    """In the field, where it is a quantity, else in its label."""
+    """A quantity shows its unit in the field, other numbers in the label."""
     quantities = (parameters.LENGTH, parameters.ANGLE, parameters.SPEED, parameters.TIME)
     numbers = (parameters.NUMBER, parameters.RATIO, parameters.TURN_RATE)
     labels, bare = {}, []
@@ -351,7 +354,11 @@ def test_every_number_has_its_unit(person):
                 (" mm", " µm", " nm", " m", "°", " deg", " mm/s", " s")
             ):
                 bare.append((row.key, line.text()))
-            if row.form in numbers and row.key not in PURE and not field.heading.endswith(")"):
+            if (
+                row.form in numbers
+                and row.key not in UNITLESS_KEYS
+                and not field.heading.endswith(")")
+            ):
                 bare.append((row.key, field.heading))
             word = row.form != MIXED or row.default is None or row.default in row.spec.words
             if not word and not line.text().endswith(row.unit):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A frame costs no more than it must: picture and figures in one turn of the window, nothing laid out anew, no more of the
-deposit given to Coin than has grown."""
+"""A frame costs no more than necessary: the window composes picture and figures once, lays out
+nothing again, and gives Coin only the new part of the deposit."""
 
 from functools import partial
 
@@ -30,8 +30,8 @@ def joint_path(hemisphere):
 
 
 class Turns:
-    """What the window does until it is at rest again: how often it is put together, and its 3D view drawn; which widgets of
-    a dock are painted and laid out meanwhile."""
+    """Count the work of the window until it is at rest: how often it is composed, how often its 3D
+    view is drawn, and which widgets of a dock are painted and laid out."""
 
     def __init__(self, person, inside):
         kind, watched = (
@@ -75,7 +75,7 @@ class Turns:
         self.graph.removeChild(self.node)
 
     def of(self, act):
-        """(times the window was put together, times the view was drawn) for an act."""
+        """Return (compositions of the window, drawings of the view) for an action."""
         self.forget()
         act()
         self.person.until(lambda: self.drawn, "the view to be drawn")
@@ -83,12 +83,11 @@ class Turns:
         return self.together, self.drawn
 
     def in_one(self, frames):
-        """Whether most of some acts put the window together no more often than the view is drawn, which is once.
-
-        What else FreeCAD does now and then is its own; so is that 1.0 and 1.1 often draw twice what moves, a lone cube too.
-        """
-        found = sorted(self.of(frame) for frame in frames)
-        together, drawn = found[len(found) // 2]
+        """Return whether for most actions the window is composed no more often than the view is
+        drawn, which is once. FreeCAD has occasional work of its own; 1.0 and 1.1 often draw a
+        moving object twice, even a lone cube."""
+        counts = sorted(self.of(frame) for frame in frames)
+        together, drawn = counts[len(counts) // 2]
         return together == drawn and (drawn == 1 or App.Version()[0] != "0")
 
 
@@ -119,14 +118,15 @@ def test_a_frame_of_a_simulation_is_one_turn_of_the_window_and_moves_no_field(pe
     assert painted <= {"time", "clock", "place", "joints", "doing", "speed", "condition", "form"}
 
 
-@pytest.mark.planned_anew  # its motion is made too fast
+@pytest.mark.planned_anew  # the test makes its motion too fast
 def test_all_that_a_simulation_tells_has_room_from_the_start(person, joint_path):
     person.look()
     value = api.result(joint_path)
     motion = value.motion
     motion.joints.flags.writeable = True
     rows = np.flatnonzero(motion.deposit)
-    motion.joints[rows[100:200], 5] += np.linspace(0.0, 30.0, 100)  # much faster than it can be
+    # much faster than the axis allows
+    motion.joints[rows[100:200], 5] += np.linspace(0.0, 30.0, 100)
     motion.joints.flags.writeable = False
     dock.simulate_object(joint_path)
     simulation = simulations._open[0]
@@ -148,7 +148,7 @@ def test_all_that_a_simulation_tells_has_room_from_the_start(person, joint_path)
     )
     person.idle(0.2)
     assert not simulation.scroll.horizontalScrollBar().isVisible()
-    # a text that nobody has thought of is shown whole
+    # an unexpected text is shown in full
     labels["doing"].show_text("deposits and waits and rapids " * 4)
     assert labels["doing"].width() >= labels["doing"].sizeHint().width()
     simulation.close()
@@ -161,13 +161,14 @@ def test_a_slider_of_the_path_is_one_turn_of_the_window(person, joint_path):
     with Turns(person, panel) as turns:
         for name in ("to", "point"):
             slider = person.field(panel, f"{name}_slider")
-            most = slider.maximum() - 1
-            assert turns.in_one(partial(slider.setValue, most - step) for step in range(FRAMES))
+            maximum = slider.maximum() - 1
+            assert turns.in_one(partial(slider.setValue, maximum - step) for step in range(FRAMES))
     paths.only.dock._show_all()
 
 
 def beads():
-    """One of many thousand points, then shorter ones: circles one above the other, then a wave."""
+    """Return one bead of many thousand points and then shorter ones: stacked circles, then a
+    wave."""
     turn = np.linspace(0.0, 60 * np.pi, 9000)
     yield np.column_stack([40 * np.cos(turn), 40 * np.sin(turn), turn / 10])
     for k in range(12):
@@ -176,10 +177,10 @@ def beads():
 
 
 def path():
-    up, made = np.array([0.0, 0.0, 1.0]), []
+    up, path_beads = np.array([0.0, 0.0, 1.0]), []
     for points in beads():
         n = len(points)
-        made.append(
+        path_beads.append(
             Bead(
                 points=points,
                 build=np.tile(up, (n, 1)),
@@ -189,12 +190,12 @@ def path():
                 closed=False,
             )
         )
-    return Rows.of(made, range(len(made)), 1.5, lambda: 1.0)
+    return Rows.of(path_beads, range(len(path_beads)), 1.5, lambda: 1.0)
 
 
 def area(nodes):
-    """Of all triangles that are drawn, mm2."""
-    found = 0.0
+    """Return the area of all drawn triangles in mm2."""
+    total = 0.0
     for look in (nodes.tubes.pieces, nodes.tubes.ends):
         for k in range(look.getNumChildren()):
             child = look.getChild(k)
@@ -206,11 +207,11 @@ def area(nodes):
             vertices = np.array(
                 [point.getValue() for point in shape.vertexProperty.getValue().vertex.getValues()]
             )
-            found += area_of(
+            total += area_of(
                 vertices,
                 np.array(list(shape.coordIndex.getValues()), dtype=int).reshape(-1, 4)[:, :3],
             )
-    return found
+    return total
 
 
 def area_of(points, triangles):
@@ -219,7 +220,8 @@ def area_of(points, triangles):
 
 
 def test_tubes_that_grow_are_whole_at_every_row(person):
-    """Against one mesh of all of it; a cut may add a face, and the last segment a second time."""
+    """The area equals that of one mesh of everything; a cut may add a face, and the last segment
+    may appear twice."""
     nodes, rows = PathNodes(), path()
     nodes.as_tubes = True
     nodes.set(rows)
@@ -229,12 +231,12 @@ def test_tubes_that_grow_are_whole_at_every_row(person):
     for end in (2, 3, 130, 9000, 9001, 9002, 9350, len(rows), *random.integers(2, len(rows), 12)):
         nodes.show(0, int(end))
         mesh, _ = rows.tube(0, int(end))
-        whole = area_of(mesh.points, mesh.triangles)
-        more = area(nodes) - whole
+        full_area = area_of(mesh.points, mesh.triangles)
+        additional_area = area(nodes) - full_area
         assert (
-            -1e-3 * whole
-            < more
-            < 2 * 1.5 * 1.0 * 4 + 5.0 * 2 * steps[max(end - 130, 0) : end].max() + 1e-3 * whole
+            -1e-3 * full_area
+            < additional_area
+            < 2 * 1.5 * 1.0 * 4 + 5.0 * 2 * steps[max(end - 130, 0) : end].max() + 1e-3 * full_area
         )
 
 
@@ -244,15 +246,15 @@ def test_tubes_that_grow_give_coin_only_what_has_grown(person):
     nodes.set(rows)
     nodes.paint(np.full((len(rows), 3), 0.5))
     nodes.show(0, 6000)
-    given = []
+    updates = []
     shape = nodes.tubes.pieces.getChild(1).getChild(0).getChild(0)
-    sensor = coin.SoNodeSensor(lambda *_: given.append(1), None)
+    sensor = coin.SoNodeSensor(lambda *_: updates.append(1), None)
     sensor.setPriority(0)
     sensor.attach(shape)
     for end in range(6001, 6401):
         nodes.show(0, end)
     sensor.detach()
-    assert 1 <= len(given) <= 4 * 4  # 400 rows; a block takes a few notices
+    assert 1 <= len(updates) <= 4 * 4  # 400 rows; a block takes a few notifications
 
 
 def test_what_is_to_come_is_drawn_from_where_the_deposit_ends(person, joint_path):
@@ -264,9 +266,11 @@ def test_what_is_to_come_is_drawn_from_where_the_deposit_ends(person, joint_path
     for row in np.flatnonzero(motion.deposit)[1::7]:
         simulation.player.go_to_row(int(row))
         simulation.show()
-        done = scene.deposit.end
+        deposited_rows = scene.deposit.end
         assert scene.to_come.end == len(scene.to_come.rows)
         assert scene.to_come.first == (
-            done if done in starts and done < scene.to_come.end else done - 1
+            deposited_rows
+            if deposited_rows in starts and deposited_rows < scene.to_come.end
+            else deposited_rows - 1
         )
     simulation.close()

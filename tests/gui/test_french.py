@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The window in French: tools, panels, errors, legends and docks; and FreeCAD as it starts in French.
-
-The language is that of the window while a test runs, and English again afterwards.
-"""
+"""The window in French: tools, panels, errors, legends and docks, and FreeCAD started in French.
+The window has this language during a test only."""
 
 import os
 import re
@@ -37,9 +35,9 @@ def french(person):
 
 
 def cut_off(person, form):
-    """The labels, buttons and boxes to tick of a form whose words have less room than they need."""
+    """Return the labels, buttons and check boxes of a form with too little room for their texts."""
     kinds = (person.widgets.QLabel, person.widgets.QAbstractButton, person.widgets.QGroupBox)
-    found = []
+    cut_texts = []
     for kind in kinds:
         for widget in form.findChildren(kind):
             text = widget.title() if isinstance(widget, person.widgets.QGroupBox) else widget.text()
@@ -54,8 +52,8 @@ def cut_off(person, form):
             if widget.height() < needed or (
                 not wraps and widget.width() < widget.minimumSizeHint().width()
             ):
-                found.append(text)
-    return found
+                cut_texts.append(text)
+    return cut_texts
 
 
 def test_tools_say_in_french_what_is_missing(french):
@@ -83,7 +81,7 @@ def test_a_panel_its_help_and_its_errors_are_french(french, hand, hemisphere):
     assert height.toolTip() == "Distance entre couches voisines."
     assert f"Permis{NO_BREAK}: plus de 0" in height.whatsThis().replace("&nbsp;", NO_BREAK)
     choices = french.field(panel, "Wall")
-    assert [choices.itemText(at) for at in range(choices.count())] == [
+    assert [choices.itemText(index) for index in range(choices.count())] == [
         "extérieure",
         "intérieure",
         "milieu",
@@ -100,23 +98,23 @@ def test_a_panel_its_help_and_its_errors_are_french(french, hand, hemisphere):
     hand.enter(panel, "LayerHeight", "2 mm")
     french.press("Ok")
     french.panel_closed()
-    made = api.stages_of(App.ActiveDocument, "feature")[0]
+    feature = api.stages_of(App.ActiveDocument, "feature")[0]
     assert (
-        made.Spacing == "iso-height" and made.LayerHeight.Value == 2.0
-    )  # documents know no language
-    assert made.Status in ("up to date", "stale")
+        feature.Spacing == "iso-height" and feature.LayerHeight.Value == 2.0
+    )  # documents are independent of the language
+    assert feature.Status in ("up to date", "stale")
 
 
 @pytest.fixture
 def commas(french):
-    """As in a FreeCAD that writes numbers as French does."""
-    before = french.core.QLocale()
+    """Use a FreeCAD that writes numbers in the French format."""
+    original_locale = french.core.QLocale()
     of_language = french.core.QLocale("fr_FR")
     french.core.QLocale.setDefault(of_language)
     french.window.setLocale(of_language)
     yield
-    french.core.QLocale.setDefault(before)
-    french.window.setLocale(before)
+    french.core.QLocale.setDefault(original_locale)
+    french.window.setLocale(original_locale)
 
 
 def test_plain_numbers_have_the_comma_that_the_language_has(french, commas, hand, hemisphere):
@@ -179,7 +177,7 @@ def test_the_numbers_of_a_pose_and_a_list_have_the_comma_of_the_language(french,
         assert row.inner(field.value, key) == value and not field.changed
     assert lines["platform"].widget.text() == "10,5 20,5 30,5 0,0 0,0 0,0"
     assert lines["heights"].widget.text() == "10,5 20"
-    for key, text, read in (
+    for key, text, expected in (
         ("platform", "10,5 20,5 31,5", (10.5, 20.5, 31.5, 0.0, 0.0, 0.0)),
         ("platform", "100,5 mm", 100.5),
         ("platform", "1,2,3", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0)),
@@ -190,7 +188,7 @@ def test_the_numbers_of_a_pose_and_a_list_have_the_comma_of_the_language(french,
         ("heights", "10, 5, 20", ("10", "5", "20")),
     ):
         lines[key].widget.setText(text)
-        assert lines[key].row.inner(lines[key].value, key) == read, text
+        assert lines[key].row.inner(lines[key].value, key) == expected, text
     for key, text in (
         ("platform", "10,5, 20,5, 3"),
         ("heights", "10,5, 20"),
@@ -202,12 +200,12 @@ def test_the_numbers_of_a_pose_and_a_list_have_the_comma_of_the_language(french,
 
 
 def test_a_number_of_the_language_is_read_whole_or_refused(french, commas):
-    for made in (QuantityField, PlainQuantity):
-        field = made(1.5, "mm", "Length")
+    for field_class in (QuantityField, PlainQuantity):
+        field = field_class(1.5, "mm", "Length")
         assert field.line.text() == "1,5 mm"
         for text, number in (("1234,5\u202fmm", 1234.5), ("12\u00a0m", 12000.0)):
             field.line.setText(text)
-            field.typed = text  # as its keys have left it
+            field.typed = text  # the state after its keys
             assert field.read() == number, text
         for text in ("1\u202f234 mm", "1\u00a0234,5", "1’234 mm"):
             field.line.setText(text)
@@ -229,29 +227,29 @@ def test_findings_and_docks_are_french(french, hemisphere):
         french.click(command)
         dock = french.panel(name)
         french.idle(2.0)
-        seen = {
+        shown_texts = {
             label.text().rstrip(f":{NO_BREAK}")
             for label in dock.findChildren(french.widgets.QLabel)
         }
-        assert words <= seen, sorted(seen)
+        assert words <= shown_texts, sorted(shown_texts)
         french.screenshot(f"french-{name}")
     assert path.Message == "" or re.search(
         r" (is|are|the) ", path.Message
-    )  # what documents hold stays English
+    )  # texts in documents stay English
 
 
 def test_freecad_that_starts_in_french_shows_ours(tmp_path):
     """Another FreeCAD, with French in its preferences."""
     program = Path(f"/proc/{os.getpid()}/exe").resolve()
     script = tmp_path / "look.py"
-    told = tmp_path / "told.txt"
+    output_file = tmp_path / "told.txt"
     script.write_text(
         "import os\nimport FreeCADGui as Gui\nfrom PySide import QtCore\n"
         "def look():\n"
         "    Gui.activateWorkbench('RoboticAMWorkbench')\n"
         "    texts = [Gui.listWorkbenches()['RoboticAMWorkbench'].ToolTip]\n"
         "    texts += [action.text() for action in Gui.Command.get('RoboticAM_NewJob').getAction()]\n"
-        f"    open({str(told)!r}, 'w', encoding='utf-8').write('\\n'.join(texts))\n"
+        f"    open({str(output_file)!r}, 'w', encoding='utf-8').write('\\n'.join(texts))\n"
         "    os._exit(0)\n"
         "QtCore.QTimer.singleShot(1000, look)\n",
         encoding="utf-8",
@@ -265,6 +263,6 @@ def test_freecad_that_starts_in_french_shows_ours(tmp_path):
         subprocess.run(
             [str(program), str(script)], env=env, timeout=120, check=False, capture_output=True
         )
-    lines = told.read_text(encoding="utf-8").splitlines()
+    lines = output_file.read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("Couches, trajectoires articulaires et programmes vérifiés")
     assert lines[1:] == ["Nouveau travail…"]

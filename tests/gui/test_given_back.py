@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What draws a path goes with it: nothing holds its rows, clicks and legends for the rest of the session."""
+"""The drawing of a path disappears with it: nothing keeps its rows, click handlers and legends for
+the rest of the session."""
 
 import gc
 import weakref
@@ -13,45 +14,47 @@ from freecad_am.gui.path import dock
 
 @pytest.fixture
 def paths(person, hemisphere):
-    """A toolpath and its joint path, both seen, with the dock of paths open."""
+    """Return a toolpath and its joint path, both visible, with the dock of paths open."""
     document = hemisphere.Document
     cell = api.make_cell(document)
     toolpath = api.make_toolpath(
         document, api.make_feature(document, hemisphere, layer_height=5), cell
     )
-    made = toolpath, api.make_joint_path(document, toolpath, cell)
+    both_paths = toolpath, api.make_joint_path(document, toolpath, cell)
     toolpath.ViewObject.Visibility = True
     person.click("RoboticAM_Path")
     person.panel(dock.NAME)
     person.idle(0.3)
-    return made
+    return both_paths
 
 
 def drawing(obj):
-    """Weak references to all that draws a path and hears of clicks on it."""
+    """Return weak references to all objects that draw a path and handle clicks on it."""
     view = obj.ViewObject.Proxy
     assert len(view.rows)
-    return [weakref.ref(one) for one in (view, view.rows, view.clicks, view.path, view.legend)]
+    return [weakref.ref(obj) for obj in (view, view.rows, view.clicks, view.path, view.legend)]
 
 
-def left(person, kept):
-    """What is still there once the window has come to rest."""
+def remaining(person, references):
+    """Return the objects that still exist when the window is at rest."""
     person.idle(0.5)
     gc.collect()
-    return [one() for one in kept if one() is not None]
+    return [reference() for reference in references if reference() is not None]
 
 
 def test_nothing_of_a_deleted_path_is_kept(person, paths):
     toolpath, joint_path = paths
     document, names = toolpath.Document, [joint_path.Name, toolpath.Name]
     document.clearUndos()
-    document.UndoMode = 0  # what can be undone is kept for that
-    kept = {name: drawing(document.getObject(name)) for name in names}
+    document.UndoMode = 0  # objects stay as long as their deletion can be undone
+    references = {name: drawing(document.getObject(name)) for name in names}
     del toolpath, joint_path, paths
     for name in names:
-        assert len(left(person, kept[name])) == len(kept[name])  # the document has them
+        assert len(remaining(person, references[name])) == len(
+            references[name]
+        )  # the document has them
         document.removeObject(name)
-        assert left(person, kept[name]) == []
+        assert remaining(person, references[name]) == []
 
 
 def test_a_path_whose_deletion_can_be_undone_comes_back_and_goes_with_the_steps(person, paths):
@@ -65,11 +68,11 @@ def test_a_path_whose_deletion_can_be_undone_comes_back_and_goes_with_the_steps(
     person.idle(0.3)
     again = document.getObject(name)
     assert len(again.ViewObject.Proxy.rows) and again.ViewObject.Visibility
-    kept = drawing(again)
+    references = drawing(again)
     document.openTransaction("Delete")
     document.removeObject(name)
     document.commitTransaction()
     del again, joint_path, paths
     document.clearUndos()
-    assert left(person, kept) == []
+    assert remaining(person, references) == []
     App.closeDocument(document.Name)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Two blades on a cone by the mouse and the keys: picked, previewed, made, filled, turned on a table, for a SINUMERIK."""
+"""Two blades on a cone by mouse and keys: selected, previewed, created, filled, rotated by a
+five-axis machine, for a SINUMERIK."""
 
 import dataclasses
 import re
@@ -14,32 +15,32 @@ from freecad_am.core.process import wire
 from freecad_am.gui.path import colouring, legend
 from freecad_am.gui.views.hub import HubView
 
-ORANGE = (245, 120, 0)  # of first layers
+ORANGE = (245, 120, 0)  # the colour of first layers
 PANEL = "RoboticAM_DevelopableFeature"
-FOOT, TIP, TALL = 40.0, 25.0, 60.0  # of the cone, mm
+BOTTOM_RADIUS, TOP_RADIUS, HEIGHT_MM = 40.0, 25.0, 60.0  # the cone, mm
 
 
 @pytest.fixture
 def rotor(person):
-    """A document with a truncated cone and two blades."""
+    """Return a document with a truncated cone and two blades."""
     document = App.newDocument("Rotor")
     hub = document.addObject("Part::Cone", "Hub")
-    hub.Radius1, hub.Radius2, hub.Height = FOOT, TIP, TALL
-    parts = []
+    hub.Radius1, hub.Radius2, hub.Height = BOTTOM_RADIUS, TOP_RADIUS, HEIGHT_MM
+    blade_objects = []
     for number, turn in enumerate((-45, 75), start=1):
         blade = document.addObject("Part::Box", f"Blade{number}")
         blade.Label = f"Blade {number}"
         blade.Length, blade.Width, blade.Height = 30, 12, 24
         spin = App.Placement(App.Vector(), App.Rotation(App.Vector(0, 0, 1), turn))
         blade.Placement = spin.multiply(App.Placement(App.Vector(25, -6, 14), App.Rotation()))
-        parts.append(blade)
+        blade_objects.append(blade)
     document.recompute()
-    return [hub, *parts]
+    return [hub, *blade_objects]
 
 
 @pytest.fixture
 def blades(person, rotor):
-    """The same, in sight, beside the tree."""
+    """Return the same, visible next to the tree."""
     for dock in person.present(person.widgets.QDockWidget):
         if dock.objectName() in ("Combo View", "Model", "Tree view"):
             dock.show()
@@ -50,7 +51,7 @@ def blades(person, rotor):
 
 
 def cone(hub):
-    """The face of the cone."""
+    """Return the name of the cone's face."""
     faces = [
         f"Face{number}"
         for number, face in enumerate(hub.Shape.Faces, start=1)
@@ -68,8 +69,8 @@ def previewed(person, panel):
 
 
 def noted_for(person, panel, entry, as_wanted):
-    """A layer height is typed, and again where the note that is wanted does not come: the hub chosen last may be at work,
-    and what is typed meanwhile is looked at no more where the window is busy."""
+    """Type a layer height, and again if the expected note does not appear: the panel may still
+    process the hub, and a busy window then ignores the typed value."""
     for attempt in range(4):
         person.type(panel, "LayerHeight", "5 mm" if attempt else entry)
         person.type(panel, "LayerHeight", entry)
@@ -84,10 +85,10 @@ def noted_for(person, panel, entry, as_wanted):
     )
 
 
-def ok(person, hand, name="Ok"):
-    wanted = getattr(person.widgets.QDialogButtonBox, name)
+def press_button(person, hand, name="Ok"):
+    button_kind = getattr(person.widgets.QDialogButtonBox, name)
     boxes = [box for box in person.present(person.widgets.QDialogButtonBox) if box.isVisible()]
-    button = next(box.button(wanted) for box in boxes if box.button(wanted) is not None)
+    button = next(box.button(button_kind) for box in boxes if box.button(button_kind) is not None)
     for area in person.present(person.widgets.QScrollArea):
         if area.isVisible() and area.isAncestorOf(button):
             area.ensureWidgetVisible(button)  # a long panel may be scrolled down
@@ -99,7 +100,7 @@ def texts(person, panel):
     return [person.field(panel, name).text() for name in ("Solids", "Hub")]
 
 
-def made(person, command, **entries):
+def make_stage(person, command, **entries):
     """Open a tool, type into its fields, and press OK."""
     person.click(command)
     panel = person.panel(command)
@@ -110,31 +111,39 @@ def made(person, command, **entries):
 
 
 def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, tmp_path):
-    hub, first, second = blades
+    hub, first_blade, second_blade = blades
     document, steps = hub.Document, hub.Document.UndoCount
-    hand.click_face(first, "Face2")
+    hand.click_face(first_blade, "Face2")
     hand.click_tree("Blade 2", "ctrl")
     hand.click_face(hub, cone(hub), "ctrl")
     hand.click(person.button("RoboticAM_SolidsOnHub"))
     panel = person.panel(PANEL)
     assert texts(person, panel) == ["Blade 1, Blade 2", f"Hub {cone(hub)}"]
-    told = previewed(person, panel)
-    half = np.degrees(np.arctan((FOOT - TIP) / TALL))
-    assert "2 solids on Hub" in told and f"half angle {half:.4g}°" in told and "2 contours" in told
+    preview_text = previewed(person, panel)
+    half = np.degrees(np.arctan((BOTTOM_RADIUS - TOP_RADIUS) / HEIGHT_MM))
+    assert (
+        "2 solids on Hub" in preview_text
+        and f"half angle {half:.4g}°" in preview_text
+        and "2 contours" in preview_text
+    )
     assert person.screen_pixels(ORANGE) > 150
     assert (set(document.Objects), document.UndoCount) == (
         set(blades),
         steps,
-    )  # nothing is made yet
+    )  # nothing exists yet
     assert not person.field(panel, "Mode").isEnabled() and person.field(panel, "Lead").isEnabled()
     hand.enter(panel, "LayerHeight", "5 mm")
     person.type(panel, "BeadSpacing", "4 mm")
     previewed(person, panel)
     person.screenshot("panel_solids_on_hub")
-    ok(person, hand)
+    press_button(person, hand)
     feature = document.getObject("Feature")
     assert (feature.Status, feature.Solids, document.UndoCount) == ("up to date", 2, steps + 1)
-    assert (feature.Source, feature.Further, feature.Substrate) == ((first, []), [second], hub)
+    assert (feature.Source, feature.Further, feature.Substrate) == (
+        (first_blade, []),
+        [second_blade],
+        hub,
+    )
     assert feature.BaseFaces == (hub, [cone(hub)]) and isinstance(feature.ViewObject.Proxy, HubView)
     key = feature.Key
 
@@ -149,10 +158,10 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
         .replace("\n", " ")
     )
     again = eval(call, {"App": App, "am": api})
-    assert again.Key == key  # the recorded call makes the same
+    assert again.Key == key  # the recorded call gives the same
     document.removeObject(again.Name)
 
-    made(person, "RoboticAM_Cell", Machine="table-xyzac")
+    make_stage(person, "RoboticAM_Cell", Machine="table-xyzac")
     assert (document.Cell.Setup, document.Cell.Status) == ("rotary-table", "up to date")
     hand.click(person.button("RoboticAM_Toolpath"))
     panel = person.panel("RoboticAM_Toolpath")
@@ -165,10 +174,10 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
         5,
     )
     person.screenshot("panel_bead_model")
-    ok(person, hand)
+    press_button(person, hand)
     toolpath = document.Toolpath
     assert toolpath.Status == "up to date" and not (
-        first.ViewObject.Visibility or second.ViewObject.Visibility
+        first_blade.ViewObject.Visibility or second_blade.ViewObject.Visibility
     )
     toolpath.ViewObject.Colouring = "width"
     person.idle()
@@ -178,9 +187,9 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
     person.look()
     person.screenshot("hub_width")
 
-    made(person, "RoboticAM_JointPath")
+    make_stage(person, "RoboticAM_JointPath")
     assert document.JointPath.Status == "up to date", document.JointPath.Message
-    made(person, "RoboticAM_Program", ProgramName="ROTOR")
+    make_stage(person, "RoboticAM_Program", ProgramName="ROTOR")
     assert (document.Program.Post, document.Program.Status) == ("siemens", "up to date"), (
         document.Program.Message
     )
@@ -206,15 +215,15 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
 
 
 def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades):
-    hub, first, second = blades
+    hub, first_blade, second_blade = blades
     document, steps = hub.Document, hub.Document.UndoCount
     hand.click(person.button("RoboticAM_SolidsOnHub"))
     panel = person.panel(PANEL)
     person.until(
         lambda: "Solids are missing" in person.field(panel, "preview").text(), "what is missing", 5
     )
-    hand.click_face(first, "Face2")
-    hand.click_face(second, "Face6")  # its upper side
+    hand.click_face(first_blade, "Face2")
+    hand.click_face(second_blade, "Face6")  # its upper side
     assert texts(person, panel) == ["Blade 1, Blade 2", ""]
     note = person.field(panel, "InputHubNote")
     person.until(
@@ -223,7 +232,7 @@ def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades)
     hand.click(person.field(panel, "PickHub"))
     hand.click_face(hub, cone(hub))
     assert texts(person, panel) == ["Blade 1, Blade 2", f"Hub {cone(hub)}"]
-    hand.click_face(hub, cone(hub))  # a second click takes it back
+    hand.click_face(hub, cone(hub))  # a second click removes it
     person.gui.Selection.addSelection(hub)
     person.until(lambda: texts(person, panel) == ["Blade 1, Blade 2", "Hub"], "the hub", 10)
     assert f"2 solids on Hub {cone(hub)}" in previewed(person, panel)
@@ -234,7 +243,7 @@ def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades)
     for entry, why in (
         ("0.000001 mm", "above the limit of 20,000"),
         ("4 mm", ""),
-    ):  # of solids that are known by now
+    ):  # the panel already has the solids
         noted_for(
             person,
             panel,
@@ -249,48 +258,54 @@ def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades)
         "the note",
         30,
     )
-    ok(person, hand, "Cancel")
+    press_button(person, hand, "Cancel")
     assert (set(document.Objects), document.UndoCount) == (set(blades), steps)
-    person.gui.Selection.addSelection(first)  # nobody listens any more
+    person.gui.Selection.addSelection(first_blade)  # the panel no longer observes the selection
     person.idle()
 
 
 def test_a_field_that_is_typed_into_stays_in_place_while_nothing_can_be_previewed(
     person, hand, blades
 ):
-    hub, first, second = blades
-    person.gui.Selection.addSelection(hub.Document.Name, first.Name)
-    person.gui.Selection.addSelection(hub.Document.Name, second.Name)
+    hub, first_blade, second_blade = blades
+    person.gui.Selection.addSelection(hub.Document.Name, first_blade.Name)
+    person.gui.Selection.addSelection(hub.Document.Name, second_blade.Name)
     person.gui.Selection.addSelection(hub.Document.Name, hub.Name, cone(hub))
     hand.click(person.button("RoboticAM_SolidsOnHub"))
     panel = person.panel(PANEL)
     previewed(person, panel)
-    told, field = person.field(panel, "preview"), person.field(panel, "LayerHeight")
+    preview_note, field = person.field(panel, "preview"), person.field(panel, "LayerHeight")
 
     def place():
         return field.mapTo(panel, person.core.QPoint(0, 0)).y()
 
-    before = place()
-    several = 1.5 * told.fontMetrics().lineSpacing()
-    person.until(lambda: told.height() > several, f"a text of several lines: {told.text()}", 5)
+    original_place = place()
+    several = 1.5 * preview_note.fontMetrics().lineSpacing()
+    person.until(
+        lambda: preview_note.height() > several,
+        f"a text of several lines: {preview_note.text()}",
+        5,
+    )
     person.type(panel, "LayerHeight", "0 mm")
-    person.until(lambda: told.text().startswith("No preview"), "that there is none", 5)
+    person.until(lambda: preview_note.text().startswith("No preview"), "that there is none", 5)
     person.idle(0.2)
-    assert place() == before
+    assert place() == original_place
     person.type(panel, "LayerHeight", "2 mm")
     previewed(person, panel)
     person.idle(0.2)
-    assert place() == before and told.minimumHeight() == 0
-    ok(person, hand, "Cancel")
+    assert place() == original_place and preview_note.minimumHeight() == 0
+    press_button(person, hand, "Cancel")
 
 
 def test_a_feature_is_changed_and_its_hub_may_be_a_face_of_its_only_solid(person, rotor):
-    hub, first, second = rotor
+    hub, first_blade, second_blade = rotor
     document = hub.Document
     fused = document.addObject("Part::MultiFuse", "Rotor")
     fused.Shapes = rotor
     document.recompute()
-    feature = api.make_developable_feature(document, first, hub, further=[second], layer_height=5)
+    feature = api.make_developable_feature(
+        document, first_blade, hub, further=[second_blade], layer_height=5
+    )
     key, steps = feature.Key, document.UndoCount
     person.double_click(feature)
     panel = person.panel(PANEL)
@@ -322,12 +337,12 @@ def test_a_feature_is_changed_and_its_hub_may_be_a_face_of_its_only_solid(person
 
 
 def test_beads_are_told_by_kind_and_layers_by_solid(person, rotor):
-    hub, first, second = rotor
+    hub, first_blade, second_blade = rotor
     feature = api.make_developable_feature(
         hub.Document,
-        first,
+        first_blade,
         hub,
-        further=[second],
+        further=[second_blade],
         layer_height=5,
         bead_spacing=4,
         fill="lines",
@@ -336,13 +351,15 @@ def test_beads_are_told_by_kind_and_layers_by_solid(person, rotor):
     toolpath = api.make_toolpath(hub.Document, feature)
     path = api.result(toolpath)
     numbers = colouring.numbered(path)
-    assert numbers == [*range(len(numbers) // 2)] * 2  # both rotor alike, each from the hub up
+    # both blades have the same numbers, counted from the hub
+    assert numbers == [*range(len(numbers) // 2)] * 2
     colours, scale = colouring.coloured(path, "kind of bead", 0.2)
     closed = np.concatenate([np.full(len(bead), bead.closed) for _, _, bead in path])
     assert (
         closed.any()
         and not closed.all()
-        and [one for one, _ in scale.classes] == [colouring.CLOSED_BEAD[0], colouring.OPEN_BEAD[0]]
+        and [colour_class for colour_class, _ in scale.classes]
+        == [colouring.CLOSED_BEAD[0], colouring.OPEN_BEAD[0]]
     )
     assert (colours[closed] == colouring.CLOSED_BEAD[1]).all() and (
         colours[~closed] == colouring.OPEN_BEAD[1]
@@ -352,15 +369,16 @@ def test_beads_are_told_by_kind_and_layers_by_solid(person, rotor):
     person.look()
     person.screenshot("hub_kinds")
     assert (
-        person.screen_pixels(tuple(round(255 * part) for part in colouring.OPEN_BEAD[1]), 6) > 100
+        person.screen_pixels(tuple(round(255 * channel) for channel in colouring.OPEN_BEAD[1]), 6)
+        > 100
     )
     _, scale = colouring.coloured(path, "width", 0.2)
     assert scale.classes == (colouring.NO_WIDTH,)
 
 
 def test_a_bead_model_is_seen_by_its_fit(person, rotor, tmp_path, monkeypatch):
-    hub, first, _ = rotor
-    feature = api.make_developable_feature(hub.Document, first, hub, layer_height=5)
+    hub, first_blade, _ = rotor
+    feature = api.make_developable_feature(hub.Document, first_blade, hub, layer_height=5)
     person.gui.Selection.clearSelection()
     person.click("RoboticAM_Toolpath")
     panel = person.panel("RoboticAM_Toolpath")
@@ -376,8 +394,8 @@ def test_a_bead_model_is_seen_by_its_fit(person, rotor, tmp_path, monkeypatch):
     ):
         assert number in fit.text()
     assert "12 beads, 300 to 900 mm/min" in fit.text()
-    before = pixels(person, plot)
-    assert len(before) > 50  # more than an empty frame
+    original_pixels = pixels(person, plot)
+    assert len(original_pixels) > 50  # more than an empty frame
     person.type(panel, "BeadModel", str(tmp_path / "none.csv"))
     person.until(lambda: not plot.isVisible(), "the plot to go", 5)
     assert "cannot be read" in person.field(panel, "BeadModelNote").text()
@@ -401,7 +419,7 @@ def test_a_bead_model_is_seen_by_its_fit(person, rotor, tmp_path, monkeypatch):
 
 
 def pixels(person, widget):
-    """The colours of a widget as it is drawn."""
+    """Return the colours of a widget as drawn."""
     image = widget.grab().toImage().convertToFormat(person.widgets.QImage.Format_RGB32)
     return np.unique(np.frombuffer(bytes(image.constBits()), dtype=np.uint32))
 
@@ -435,23 +453,24 @@ def test_a_cell_follows_its_machine(person, rotor):
         10,
     )
     person.type(panel, "Machine", "table-xyzac")
-    person.press("Ok")  # before the panel has followed by itself
+    person.press("Ok")  # before the panel has updated
     person.panel_closed()
     cell = person.gui.activeDocument().Document.Cell
     assert (cell.Machine, cell.Setup, cell.Status) == ("table-xyzac", "rotary-table", "up to date")
 
 
 def test_many_points_are_coloured_at_once(person, rotor):
-    """Hundred thousand points are one node, and another colouring gives as many colours."""
-    hub, first, _ = rotor
-    feature = api.make_developable_feature(hub.Document, first, hub, layer_height=5)
+    """A hundred thousand points are one node, and another colouring gives the same number of
+    colours."""
+    hub, first_blade, _ = rotor
+    feature = api.make_developable_feature(hub.Document, first_blade, hub, layer_height=5)
     toolpath = api.make_toolpath(hub.Document, feature)
     path = api.result(toolpath)
     count = -(-100_000 // path.point_count)
-    many = dataclasses.replace(path, layers=path.layers * count)
+    large_path = dataclasses.replace(path, layers=path.layers * count)
     view = toolpath.ViewObject.Proxy
-    view.draw(toolpath, many)
+    view.draw(toolpath, large_path)
     assert len(view.rows) >= 100_000
     for kind in colouring.KINDS:
         if kind != "local distance":
-            assert len(colouring.coloured(many, kind, 0.2)[0]) == len(view.rows)
+            assert len(colouring.coloured(large_path, kind, 0.2)[0]) == len(view.rows)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a panel does later: that a field of it is gone by then is passed over, and no other error."""
+"""If a deferred action of a panel finds that a field is deleted, it does nothing; other errors are
+raised."""
 
 import pytest
 
@@ -13,8 +14,8 @@ def form(person):
     widget.deleteLater()
 
 
-def gone(person):
-    """A field that Qt has deleted and Python still has."""
+def deleted_field(person):
+    """Return a field that Qt has deleted and Python still holds."""
     outer = person.widgets.QWidget()
     inner = person.widgets.QLabel("text", outer)
     outer.deleteLater()
@@ -23,9 +24,9 @@ def gone(person):
 
 
 def failing(person, kind):
-    """What ends with an error of a kind."""
+    """Return a function that raises an error of a kind."""
     if kind == "deleted field":
-        return gone(person).text
+        return deleted_field(person).text
     error = {
         "of FreeCAD": RuntimeError("Recompute failed"),
         "of Python": RuntimeError("dictionary changed size"),
@@ -37,7 +38,7 @@ def failing(person, kind):
     return fail
 
 
-def shown(person, form, kind):
+def show_result(person, form, kind):
     """Show the result of work in a panel, which fails."""
     background, fail = Background(form), failing(person, kind)
     background.start(lambda: 1, lambda _: fail())
@@ -55,17 +56,17 @@ class Panel:
         self.fail()
 
 
-def asked(person, form, kind):
-    """Do at once what a panel was asked for, which fails."""
+def run_now(person, form, kind):
+    """Run the requested action of a panel at once, which fails."""
     panel = Panel(form, failing(person, kind))
     panel.later.ask()
     panel.later.at_once()
 
 
-@pytest.mark.parametrize("act", [shown, asked])
+@pytest.mark.parametrize("act", [show_result, run_now])
 def test_a_field_that_is_gone_is_passed_over_and_nothing_else(person, form, act):
     with pytest.raises(RuntimeError, match="deleted"):
-        gone(person).text()
+        deleted_field(person).text()
     act(person, form, "deleted field")
     for kind, text in (
         ("of FreeCAD", "Recompute failed"),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A click on one face means the part, and what of a part would not be deposited is told before anything is made."""
+"""A click on one face selects the part, and the panel states which regions of it would not be
+deposited."""
 
 import FreeCAD as App
 import Part
@@ -10,13 +11,13 @@ from freecad_am import api
 
 @pytest.fixture
 def rod(person):
-    """A solid cylinder, of which a bead lays a skin."""
+    """Return a solid cylinder, of which a bead would print only a skin."""
     doc = App.newDocument("Rod")
-    part = doc.addObject("Part::Feature", "Rod")
-    part.Shape = Part.makeCylinder(30, 40)
+    rod_object = doc.addObject("Part::Feature", "Rod")
+    rod_object.Shape = Part.makeCylinder(30, 40)
     doc.recompute()
     person.gui.Selection.clearSelection()
-    yield part
+    yield rod_object
     App.closeDocument(doc.Name)
 
 

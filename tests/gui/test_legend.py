@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Colours of a toolpath tell what their legend says, and the legend is there when its toolpath is, and only then."""
+"""The colours of a toolpath match its legend, which is visible exactly when its toolpath is."""
 
 import dataclasses
 
@@ -16,13 +16,13 @@ from freecad_am.gui.path import colouring, legend
 @pytest.fixture
 def toolpath(person, hemisphere):
     feature = api.make_feature(hemisphere.Document, hemisphere, layer_height=5)
-    made = api.make_toolpath(hemisphere.Document, feature)
+    toolpath_object = api.make_toolpath(hemisphere.Document, feature)
     person.idle()
-    return made
+    return toolpath_object
 
 
-def shown(person):
-    """The legends to be seen, each as title and unit."""
+def visible_legends(person):
+    """Return the visible legends, each as title and unit."""
     document = App.ActiveDocument
     return (
         []
@@ -37,46 +37,47 @@ def test_each_colouring_has_its_legend(person, toolpath):
     for kind, unit in zip(colouring.KINDS, ("", "mm", "deg", "mm/s", "", ""), strict=True):
         vobj.Colouring = kind
         person.idle()
-        assert shown(person) == [(kind, unit)]
+        assert visible_legends(person) == [(kind, unit)]
         person.screenshot(f"colouring_{kind.replace(' ', '_')}")
     vobj.ShowLegend = False
     person.idle()
-    assert shown(person) == []
+    assert visible_legends(person) == []
     vobj.ShowLegend = True
     vobj.Visibility = False
     person.idle()
-    assert shown(person) == []
+    assert visible_legends(person) == []
     vobj.Visibility = True
     person.idle()
-    assert shown(person) == [("kind of bead", "")]
+    assert visible_legends(person) == [("kind of bead", "")]
 
 
 def test_the_legend_is_on_the_screen_and_stays_where_it_is(person, toolpath):
     colours = [tuple(np.rint(255 * ramp([share])[0])) for share in (0.0, 0.25, 0.75, 1.0)]
     toolpath.ViewObject.LineWidth = 1.0
-    toolpath.ViewObject.Colouring = "speed"  # one speed: a bar of one colour
+    toolpath.ViewObject.Colouring = "speed"  # one speed: a bar with one colour
     middle = np.rint(255 * ramp([0.5])[0])
     person.look()
-    whole = person.screen_pixels(middle, 4)
-    assert whole >= 16 * 150  # the bar
+    bar_pixels = person.screen_pixels(middle, 4)
+    assert bar_pixels >= 16 * 150  # the bar
     toolpath.ViewObject.Colouring = "layer"
     for colour in colours:
         assert person.screen_pixels(colour, 4) >= 16
-    toolpath.ViewObject.Look = "tubes"  # shaded: what has the colours of the ramp is the bar
-    before = bar(person)
-    assert before.sum() > 1000
+    # tubes are shaded, so only the bar has the colours of the ramp
+    toolpath.ViewObject.Look = "tubes"
+    original_bar = find_bar(person)
+    assert original_bar.sum() > 1000
     view = person.gui.activeDocument().activeView()
     view.viewTop()
     person.gui.SendMsgToActiveView("ViewFit")
     person.idle()
-    assert np.array_equal(bar(person), before)
+    assert np.array_equal(find_bar(person), original_bar)
     view.setCameraType("Perspective")
     person.idle()
-    assert np.array_equal(bar(person), before)
+    assert np.array_equal(find_bar(person), original_bar)
 
 
-def bar(person):
-    """Where in the upper left corner of a saved picture the colours of the ramp are."""
+def find_bar(person):
+    """Return where the upper left corner of a saved picture has the colours of the ramp."""
     path = str(person.folder / "corner.png")
     person.gui.activeDocument().activeView().saveImage(path, 800, 600, "White")
     image = person.widgets.QImage(path).convertToFormat(person.widgets.QImage.Format_RGB32)
@@ -91,19 +92,19 @@ def bar(person):
 
 def test_the_legend_follows_undo_deletion_and_views(person, toolpath):
     document = toolpath.Document
-    assert shown(person) == [("layer", "")]
+    assert visible_legends(person) == [("layer", "")]
     person.gui.runCommand("Std_Undo")
     person.idle()
-    assert document.getObject("Toolpath") is None and shown(person) == []
+    assert document.getObject("Toolpath") is None and visible_legends(person) == []
     person.gui.runCommand("Std_Redo")
     person.idle()
-    assert shown(person) == [("layer", "")]
+    assert visible_legends(person) == [("layer", "")]
     person.gui.runCommand("Std_ViewCreate")
     person.idle(0.4)
-    assert bar(person).sum() > 1000  # in the new view too
+    assert find_bar(person).sum() > 1000  # in the new view too
     document.removeObject("Toolpath")
     person.idle()
-    assert shown(person) == [] and bar(person).sum() == 0
+    assert visible_legends(person) == [] and find_bar(person).sum() == 0
 
 
 def test_two_legends_stand_side_by_side_with_their_names(person, toolpath):
@@ -111,19 +112,20 @@ def test_two_legends_stand_side_by_side_with_their_names(person, toolpath):
     second = api.make_toolpath(document, document.Feature, label="Other")
     person.idle()
     assert [scale.title for scale in legend.visible_scales(document)] == ["layer", "layer"]
-    first, other = toolpath.ViewObject.Proxy.legend, second.ViewObject.Proxy.legend
-    assert (first.entry[0], other.entry[0]) == (
+    first_legend, second_legend = toolpath.ViewObject.Proxy.legend, second.ViewObject.Proxy.legend
+    assert (first_legend.entry[0], second_legend.entry[0]) == (
         ("Toolpath",),
         ("Other",),
-    ) and other.left > first.left == 0
+    ) and second_legend.left > first_legend.left == 0
     person.screenshot("two_legends")
     second.ViewObject.Visibility = False
     person.idle()
-    assert first.entry[0] == () and other.entry is None
+    assert first_legend.entry[0] == () and second_legend.entry is None
 
 
 def test_local_distances_are_told_by_colour(person, toolpath):
-    """In the band by the ramp, outside of it by a colour of its own, the first layer grey."""
+    """Distances within the band have colours of the ramp, others a colour of their own, and the
+    first layer is grey."""
     path = api.result(toolpath)
     low = path.layers[3].beads[0]
     nearer = dataclasses.replace(low, points=low.points - [0.0, 0.0, 2.5])
@@ -132,12 +134,14 @@ def test_local_distances_are_told_by_colour(person, toolpath):
     moved = dataclasses.replace(path, layers=tuple(layers))
     colours, scale = colouring.coloured(moved, "local distance", 0.2)
     distance = np.concatenate(local_distances(moved))
-    first = len(path.layers[0].beads[0])
-    assert np.isnan(distance[:first]).all() and (colours[:first] == colouring.NONE).all()
-    near, far = distance < 4.0 - 1e-6, distance > 6.0 + 1e-6
-    assert near.any() and far.any() and scale.below and scale.above and scale.without
-    assert (colours[near] == colouring.BELOW_COLOUR).all() and (
-        colours[far] == colouring.ABOVE_COLOUR
+    first_count = len(path.layers[0].beads[0])
+    assert (
+        np.isnan(distance[:first_count]).all() and (colours[:first_count] == colouring.NONE).all()
+    )
+    too_near, too_far = distance < 4.0 - 1e-6, distance > 6.0 + 1e-6
+    assert too_near.any() and too_far.any() and scale.below and scale.above and scale.without
+    assert (colours[too_near] == colouring.BELOW_COLOUR).all() and (
+        colours[too_far] == colouring.ABOVE_COLOUR
     ).all()
     within = (distance > 4.0 + 1e-6) & (distance < 6.0 - 1e-6)
     assert np.array_equal(colours[within], ramp((distance[within] - 4.0) / 2.0))

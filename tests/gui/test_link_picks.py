@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Clicks on links, link arrays and their elements in a turned assembly: the panel takes what was clicked, where it is seen."""
+"""Clicks on links, link arrays and their elements in a rotated assembly: the panel takes the
+clicked object at its visible location."""
 
 import FreeCAD as App
 import Part
@@ -14,7 +15,8 @@ PANEL = "RoboticAM_SolidFeature"
 
 @pytest.fixture
 def assembly(person):
-    """A box, a link to it and two link arrays of three in a turned part; elements are objects or not; one by Draft."""
+    """Return a box, a link to it and two link arrays of three in a rotated part; elements are
+    objects or not; one is by Draft."""
     doc = App.newDocument("Arrays")
     box = doc.addObject("Part::Box", "Box")
     box.Length, box.Width, box.Height = 20, 30, 10
@@ -76,19 +78,20 @@ def test_what_is_clicked_is_taken(person, assembly, path, label):
     select(person, assembly, "Asm", path)
     (pick,) = picking.selected(assembly)
     assert pick.obj.Label == label
-    seen = Part.getShape(assembly.Asm, path, needSubElement=not path.endswith("."))
-    own = global_shape(pick.obj)
-    own = own.getElement(pick.names[0]) if pick.names else own
-    assert own.CenterOfMass.distanceToPoint(seen.CenterOfMass) < 1e-6
-    assert own.Area == pytest.approx(seen.Area)
+    shown_shape = Part.getShape(assembly.Asm, path, needSubElement=not path.endswith("."))
+    picked_shape = global_shape(pick.obj)
+    picked_shape = picked_shape.getElement(pick.names[0]) if pick.names else picked_shape
+    assert picked_shape.CenterOfMass.distanceToPoint(shown_shape.CenterOfMass) < 1e-6
+    assert picked_shape.Area == pytest.approx(shown_shape.Area)
 
 
 @pytest.mark.parametrize("path", ["Hidden.1.Face1", "{row}.1.Face1", "Shown.Shown_i1.Face1"])
 def test_a_solid_of_one_element_by_its_panel(person, assembly, path):
-    """The whole array was deposited. What is made for the element is in the same step of undo."""
+    """Only the element is printed, not the whole array, and its helper object belongs to the same
+    undo step."""
     path = path.format(row=draft_array(assembly).Name)
     select(person, assembly, "Asm", path)
-    steps, before = assembly.UndoCount, {obj.Name for obj in assembly.Objects}
+    steps, object_names = assembly.UndoCount, {obj.Name for obj in assembly.Objects}
     person.click("RoboticAM_Solid")
     person.panel(PANEL)
     expected = Part.getShape(assembly.Asm, path.removesuffix("Face1"))
@@ -100,11 +103,12 @@ def test_a_solid_of_one_element_by_its_panel(person, assembly, path):
     assert shape.CenterOfMass.distanceToPoint(expected.CenterOfMass) < 1e-6
     assert assembly.UndoCount == steps + 1
     assembly.undo()
-    assert {obj.Name for obj in assembly.Objects} == before
+    assert {obj.Name for obj in assembly.Objects} == object_names
 
 
 def test_one_face_for_a_wall_says_what_is_taken(person, assembly):
-    """A click on a part selects one face of it: the panel takes the part, and says so as long as it is open."""
+    """A click on a part selects one face: the panel takes the part, and says so while it is
+    open."""
     select(person, assembly, "Box", "Face1")
     person.click("RoboticAM_WallOnPart")
     panel = person.panel("RoboticAM_SurfaceFeature")

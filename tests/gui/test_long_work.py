@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Long work beside a window that stays alive: progress, Cancel by the mouse and by Esc, and the document as before."""
+"""During long work the window stays responsive: progress, Cancel by mouse and by Esc, and an
+unchanged document."""
 
 import gc
 import re
@@ -23,8 +24,10 @@ from tests.gui.long_jobs import JOBS
 
 pytestmark = pytest.mark.planned_anew
 
-HANGING = 5.0  # s; what takes longer than that does not react, however busy the machine: `bench long_work` measures it
-LONG = 60.0  # s that none of the works below may be seen to the end in
+# s; a longer pause counts as not responding, however busy the machine; `bench long_work` measures
+# the pause
+MAX_PAUSE_S = 5.0
+WORK_S = 60.0  # s; none of the works below ends earlier
 
 
 @pytest.fixture(params=JOBS, ids=lambda make: make.__name__)
@@ -32,13 +35,14 @@ def long_job(person, request, root):
     return request.param(root)
 
 
-def dialogs(person):
-    found = person.present(person.widgets.QDialog, busy.NAME)
-    return [dialog for dialog in found if dialog.isVisible()]
+def find_dialogs(person):
+    widgets = person.present(person.widgets.QDialog, busy.NAME)
+    return [dialog for dialog in widgets if dialog.isVisible()]
 
 
 class Traced:
-    """Notes the thread it is deleted in, as a widget would feel it; one of a cycle is deleted by Python's collection."""
+    """Record the thread in which it is deleted, which matters for widgets; Python's collection
+    deletes one of a cycle."""
 
     def __init__(self, ends, cycle):
         self.ends = ends
@@ -49,7 +53,7 @@ class Traced:
 
 
 class Watcher:
-    """Ticks beside the work, as everything in the window does, and acts once the dialog is there."""
+    """Tick during the work, like everything in the window, and act when the dialog is open."""
 
     def __init__(self, person, act):
         self.person, self.act = person, act
@@ -61,10 +65,10 @@ class Watcher:
 
     def tick(self):
         self.ticks.append(time.monotonic())
-        shown = dialogs(self.person)
-        if shown and self.acted is None:
+        open_dialogs = find_dialogs(self.person)
+        if open_dialogs and self.acted is None:
             self.acted = time.monotonic()
-            self.act(shown[0])
+            self.act(open_dialogs[0])
 
     def stop(self):
         self.timer.stop()
@@ -72,7 +76,7 @@ class Watcher:
 
 
 def state(document):
-    """All that is saved of the objects; what FreeCAD 1.0 shows as an address has none."""
+    """Return all saved data of the objects, except those that FreeCAD 1.0 shows as an address."""
     left_out = ("Visibility", "Proxy", "Shape")
     return {
         obj.Name: [
@@ -85,17 +89,17 @@ def state(document):
 
 
 def wind_down(person):
-    """Until no work goes on that was cancelled."""
+    """Wait until cancelled work has ended."""
     person.until(
-        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
+        lambda: not [thread for thread in threading.enumerate() if thread.name == "Robotic AM"],
         "the work to end",
-        LONG,
+        WORK_S,
     )
 
 
 def test_cancel_ends_the_work_and_leaves_the_document_as_it_was(person, long_job):
     document = long_job.document
-    before, steps = state(document), (document.UndoCount, document.RedoCount)
+    original, steps = state(document), (document.UndoCount, document.RedoCount)
     texts = []
 
     def cancel(dialog):
@@ -104,7 +108,7 @@ def test_cancel_ends_the_work_and_leaves_the_document_as_it_was(person, long_job
 
     def press():
         stamps.append(time.monotonic())
-        person.field(dialogs(person)[0], "cancel").click()
+        person.field(find_dialogs(person)[0], "cancel").click()
 
     stamps = []
     watcher = Watcher(person, cancel)
@@ -112,22 +116,22 @@ def test_cancel_ends_the_work_and_leaves_the_document_as_it_was(person, long_job
         getattr(api, long_job.function)(document, **long_job.inputs)
     latency = time.monotonic() - stamps[0]
     watcher.stop()
-    assert latency < HANGING and max(watcher.gaps) < HANGING
+    assert latency < MAX_PAUSE_S and max(watcher.gaps) < MAX_PAUSE_S
     assert texts[0][0].startswith(("Toolpath", "Joint path"))
-    assert len(watcher.ticks) > 3 and dialogs(person) == []
-    assert (state(document), (document.UndoCount, document.RedoCount)) == (before, steps)
+    assert len(watcher.ticks) > 3 and find_dialogs(person) == []
+    assert (state(document), (document.UndoCount, document.RedoCount)) == (original, steps)
     assert not hooks.carrying()
     wind_down(person)
 
 
 def endless(monkeypatch, stage, entered=None):
-    """Let the work of a stage go on until it is cancelled, telling its progress."""
+    """Let the work of a stage continue until it is cancelled, and report its progress."""
 
     def prepare(self, obj):
         def work():
             if entered is not None:
                 entered.append(threading.current_thread())
-            for number in range(int(LONG / 0.01)):
+            for number in range(int(WORK_S / 0.01)):
                 time.sleep(0.01)
                 progress.report(min(1.0, number / 100), "counting")
             raise AssertionError("seen to the end")
@@ -143,7 +147,7 @@ def feature(person, hemisphere):
 
 
 def by_esc(person):
-    """Press Esc, as the keyboard would."""
+    """Press Esc on the keyboard."""
     process = []
 
     def press():
@@ -153,12 +157,14 @@ def by_esc(person):
 
 
 def by_mouse(person):
-    """Click on Cancel, as the mouse would."""
+    """Click Cancel with the mouse."""
 
     def press(dialog):
         button = person.field(dialog, "cancel")
-        place = button.mapToGlobal(button.rect().center())
-        subprocess.Popen(["xdotool", "mousemove", str(place.x()), str(place.y()), "click", "1"])
+        position = button.mapToGlobal(button.rect().center())
+        subprocess.Popen(
+            ["xdotool", "mousemove", str(position.x()), str(position.y()), "click", "1"]
+        )
 
     return lambda dialog: person.core.QTimer.singleShot(200, lambda: press(dialog))
 
@@ -168,7 +174,7 @@ def test_ok_is_cancelled_and_the_panel_stays_with_what_was_entered(
     person, feature, monkeypatch, way
 ):
     document, steps = feature.Document, feature.Document.UndoCount
-    before = state(document)
+    original = state(document)
     endless(monkeypatch, Toolpath)
     person.click("RoboticAM_Toolpath")
     panel = person.panel("RoboticAM_Toolpath")
@@ -176,7 +182,7 @@ def test_ok_is_cancelled_and_the_panel_stays_with_what_was_entered(
     watcher = Watcher(person, way(person))
     person.press("Ok")
     watcher.stop()
-    assert watcher.acted and state(document) == before and document.UndoCount == steps
+    assert watcher.acted and state(document) == original and document.UndoCount == steps
     assert (
         "Cancelled" in person.panel_error(panel) and person.field(panel, "TravelSpeed").isVisible()
     )
@@ -262,12 +268,12 @@ def test_what_events_bring_about_meanwhile_is_refused_and_fails_nothing(
 
 def test_progress_is_shown_with_words(person, feature, monkeypatch):
     endless(monkeypatch, Toolpath)
-    seen = []
+    shown_progress = []
 
     def look(dialog):
         def read():
             bar = person.field(dialog, "bar")
-            seen.append(
+            shown_progress.append(
                 (
                     person.field(dialog, "text").text(),
                     bar.value(),
@@ -283,8 +289,8 @@ def test_progress_is_shown_with_words(person, feature, monkeypatch):
     with pytest.raises(Cancelled):
         api.make_toolpath(feature.Document, feature)
     watcher.stop()
-    assert seen[0][0] == "Toolpath: counting" and seen[0][1] > 0
-    assert seen[0][2]  # nothing of the bar is cut off
+    assert shown_progress[0][0] == "Toolpath: counting" and shown_progress[0][1] > 0
+    assert shown_progress[0][2]  # the whole bar is visible
 
     def endlessly(path):
         while True:
@@ -295,12 +301,13 @@ def test_progress_is_shown_with_words(person, feature, monkeypatch):
     with pytest.raises(Cancelled):
         part_file.part_shape("/parts/cup.step")
     watcher.stop()
-    assert seen[1][0] == "cup: reading the file"  # not that it is computed
+    assert shown_progress[1][0] == "cup: reading the file"  # not the word for computing
 
 
 def test_work_that_swallows_the_order_to_end_is_left_to_itself(person):
-    """Python runs no exception into compiled code: it is asked again, and nobody waits for it."""
-    goes_on, seen = threading.Event(), []
+    """Python raises no exception within compiled code, so it requests the end again, and the window
+    does not wait."""
+    goes_on, caught = threading.Event(), []
 
     def work():
         for _ in range(2):
@@ -308,7 +315,7 @@ def test_work_that_swallows_the_order_to_end_is_left_to_itself(person):
                 while not goes_on.is_set():
                     time.sleep(0.01)
             except Cancelled:
-                seen.append("swallowed")
+                caught.append("swallowed")
 
     worker = Worker(work)
     person.idle(0.1)
@@ -316,28 +323,29 @@ def test_work_that_swallows_the_order_to_end_is_left_to_itself(person):
     with pytest.raises(Cancelled):
         worker.result()
     person.until(lambda: worker.ended.is_set(), "the second order to end", 10)
-    assert seen == ["swallowed", "swallowed"]
+    assert caught == ["swallowed", "swallowed"]
 
 
 @pytest.mark.parametrize("cancelled", [False, True])
 def test_nothing_of_the_window_is_deleted_in_the_thread_of_work(person, cancelled):
-    """Neither what the work refers to nor cycles that are left about: Qt would still call a timer that was."""
+    """This holds for the work's references and for cycles: Qt would still call a timer deleted in
+    another thread."""
     assert gc.isenabled()
     ends, collections, go_on = [], [], threading.Event()
 
     def begin():
-        held = Traced(ends, cycle=False)
+        traced = Traced(ends, cycle=False)
 
         def work():
             while not go_on.is_set():
                 len(
-                    [[held, number] for number in range(20_000)]
-                )  # many times what Python collects cycles after
+                    [[traced, number] for number in range(20_000)]
+                )  # many times the threshold of Python's collection
                 time.sleep(0.01)
 
         return Worker(work)
 
-    def collected(phase, told):
+    def collected(phase, info):
         collections.append(threading.current_thread())
 
     gc.callbacks.append(collected)
@@ -346,7 +354,7 @@ def test_nothing_of_the_window_is_deleted_in_the_thread_of_work(person, cancelle
         Traced(ends, cycle=True)
         person.until(lambda: ends, "the cycle to be collected", 10)
         worker.cancel() if cancelled else go_on.set()
-        del worker  # the window has lost interest, as when a panel is closed
+        del worker  # the window drops the work, as when a panel closes
         person.until(lambda: len(ends) == 2, "what the work refers to, to be deleted", 10)
         person.until(gc.isenabled, "Python to collect by itself again", 10)
     finally:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The machine in the 3D view: there, where PyKDL puts it, hidden and shown by clicks, drawn from a user's own files."""
+"""The machine in the 3D view: drawn at PyKDL's pose, hidden and shown by clicks, and drawn from a
+user's own files."""
 
 import json
 from pathlib import Path
@@ -20,7 +21,7 @@ from freecad_am.kdl import KdlArm
 
 
 def matrix(transform):
-    """The pose (4, 4) of a transformation node, as the scene has it."""
+    """Return the pose (4, 4) of a transformation node in the scene."""
     return np.array(transform.matrix.getValue().getValue()).T
 
 
@@ -57,12 +58,15 @@ def test_machines_are_drawn_where_pykdl_puts_them(person, hemisphere, name):
     resolved = cells.resolve(value, planned.frame)
     q = at_rest(resolved, resting_point(planned, planned.frame))
     flange = KdlArm(resolved.machine).forward([q])[0]
-    base, last = matrix(view.nodes.machine.transforms[0]), matrix(view.nodes.machine.transforms[-1])
-    drawn = frames.inverse(base) @ last @ resolved.machine.chain.flange
+    base, flange_link = (
+        matrix(view.nodes.machine.transforms[0]),
+        matrix(view.nodes.machine.transforms[-1]),
+    )
+    drawn = frames.inverse(base) @ flange_link @ resolved.machine.chain.flange
     assert np.abs(drawn - flange).max() < 2e-3  # Coin keeps floats of 24 bits
-    if resolved.setup != "tool-on-robot":  # the part hangs on the flange: it has not moved
-        part = base @ flange @ resolved.poses.carried @ frames.inverse(resolved.poses.mount)
-        assert np.abs(part - np.eye(4)).max() < 2e-3
+    if resolved.setup != "tool-on-robot":  # the part is on the flange: it has not moved
+        part_frame = base @ flange @ resolved.poses.carried @ frames.inverse(resolved.poses.mount)
+        assert np.abs(part_frame - np.eye(4)).max() < 2e-3
     actions, _menu = shown_menu(person, cell.ViewObject)
     assert actions["RoboticAM_ShowMachine"].text() == "Hide machine"
     actions["RoboticAM_ShowMachine"].trigger()
@@ -89,7 +93,8 @@ def test_a_machine_that_is_shown_is_there_when_the_document_is_opened_again(pers
 
 @pytest.fixture
 def own_machine(tmp_path):
-    """A copy of a machine file with a STEP for the base, an STL in m for link 2, and a file for link 3 that is not there."""
+    """Return a copy of a machine file with a STEP for the base, an STL in m for link 2, and a
+    missing file for link 3."""
     content = json.loads(
         (machines.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8")
     )
@@ -111,10 +116,10 @@ def test_a_users_files_are_drawn_and_a_missing_one_is_told(person, own_machine):
     cell.ViewObject.ShowMachine = True
     person.look()
     person.screenshot("machine_own_files")
-    told = [line for line in person.console().splitlines() if "NO_FILE" in line]
-    assert any("shapes.joint_3.file" in line and "plain solid" in line for line in told)
+    messages = [line for line in person.console().splitlines() if "NO_FILE" in line]
+    assert any("shapes.joint_3.file" in line and "plain solid" in line for line in messages)
     materials = cell.ViewObject.Proxy.nodes.machine.materials
-    assert [len(parts) > 1 for parts in materials[:4]] == [False, True, False, True]
+    assert [len(link_parts) > 1 for link_parts in materials[:4]] == [False, True, False, True]
     assert np.allclose(materials[0][0][1], (0.1, 0.2, 0.9))
     view = person.gui.activeDocument().activeView()
     path = str(person.folder / "own.png")

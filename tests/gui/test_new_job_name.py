@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The name of a new job's program follows the machine until another one is typed, and what its controller refuses is told
-under the field before anything is planned."""
+"""The name of a new job's program follows the machine until the user types another one. A name that
+the controller rejects gives a message under the field before planning."""
 
 from freecad_am import api
 
@@ -33,7 +33,7 @@ def test_the_name_follows_the_machine_until_another_one_is_typed(person, hand, h
         person.press("Ok")
         assert (
             note.isVisible() and fold.isChecked() and api.stages_of(doc) == []
-        )  # nothing was planned
+        )  # no planning has started
     person.type(panel, "ProgramName", "STAGE_2")
     person.until(lambda: not note.isVisible(), "the note to go", 5)
     hand.enter(panel, "Machine", "fanuc-arcmate120ic")
@@ -43,7 +43,7 @@ def test_the_name_follows_the_machine_until_another_one_is_typed(person, hand, h
     person.press("Ok")
     assert (
         fold.isChecked() and person.field(panel, "MachineNote").isVisible()
-    )  # so is what is found out on the way
+    )  # this also holds for errors during planning
     person.press("Cancel")
     person.panel_closed()
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A new job with the torch on a robot, by clicks: a positioner is proposed where the torch would lean too far, and the robot
-is shown there; no fields for machines that have no choice."""
+"""A new job with the torch on a robot, by clicks: New Job proposes a positioner if the torch
+would lean too far, and the view shows the robot there; machines without a choice have no fields
+for it."""
 
 import math
 
@@ -20,8 +21,8 @@ def test_a_positioner_is_proposed_in_new_job_and_the_robot_is_shown_there(
     monkeypatch.setattr(
         api,
         "make_feature_of",
-        lambda *given, values, **named: make(
-            *given, values={"layer_height": 15.0, "chord_error": 0.3, **values}, **named
+        lambda *arguments, values, **named: make(
+            *arguments, values={"layer_height": 15.0, "chord_error": 0.3, **values}, **named
         ),
     )
     person.select(hemisphere)
@@ -37,7 +38,7 @@ def test_a_positioner_is_proposed_in_new_job_and_the_robot_is_shown_there(
     person.until(leaning.isEnabled, "how far a torch may lean", 5)
     hand.enter(panel, "MaxFromVertical", "10 deg")
     person.as_revolution()
-    before = len(person.console())
+    console_length = len(person.console())
     person.press("Ok")
     person.panel_closed()
     cell, feature, _, path = api.stages_of(doc)[:4]
@@ -45,8 +46,10 @@ def test_a_positioner_is_proposed_in_new_job_and_the_robot_is_shown_there(
     assert math.isclose(feature.MaxFromVertical.Value, 10.0) and cell.Setup == "tool-on-robot"
     (positioner,) = EXTERNAL.read(cell.External)
     assert positioner.carries == "part"
-    assert f"proposed for this job: {EXTERNAL.text([positioner])}" in person.console()[before:]
-    # the robot stands there with its torch on the part, drawn
+    assert (
+        f"proposed for this job: {EXTERNAL.text([positioner])}" in person.console()[console_length:]
+    )
+    # the robot is drawn there with its torch on the part
     assert cell.ViewObject.ShowMachine and cell.ViewObject.Proxy.nodes.machine is not None
     person.look()
     person.screenshot("new_job_positioner")
@@ -76,16 +79,14 @@ def test_a_set_up_is_proposed_in_which_a_program_is_written_and_that_of_the_last
     )
     hand.enter(panel, "Machine", "kuka-kr16-2")
     person.choose(panel, "Setup", "part-on-robot")
-    person.until(
-        without.isVisible, "that no program is written", 5
-    )  # what is chosen all the same stays
+    person.until(without.isVisible, "that no program is written", 5)  # the user's own choice stays
     assert setup.currentData() == "part-on-robot" and "need the tool on the robot" in without.text()
     person.press("Cancel")
     person.panel_closed()
-    for chosen in ("tool-on-robot", "part-on-robot"):
-        api.make_cell(doc, machine="fanuc-m710ic-12l", setup=chosen, branch="auto")
+    for last_setup in ("tool-on-robot", "part-on-robot"):
+        api.make_cell(doc, machine="fanuc-m710ic-12l", setup=last_setup, branch="auto")
         person.click("RoboticAM_NewJob")
         panel = person.panel("RoboticAM_NewJob")
-        assert person.field(panel, "Setup").currentData() == chosen
+        assert person.field(panel, "Setup").currentData() == last_setup
         person.press("Cancel")
         person.panel_closed()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layer height, width or spacing of beads and the platform are entered in New Job, with units and expressions."""
+"""New Job has fields for layer height, width or spacing of beads and the platform, with units and
+expressions."""
 
 import math
 
@@ -15,8 +16,8 @@ def rough(monkeypatch):
     monkeypatch.setattr(
         api,
         "make_feature_of",
-        lambda *given, values, **named: make(
-            *given, values={"chord_error": 0.3, **values}, **named
+        lambda *arguments, values, **named: make(
+            *arguments, values={"chord_error": 0.3, **values}, **named
         ),
     )
 
@@ -56,10 +57,10 @@ def test_sizes_of_a_wall_are_entered_with_units_and_follow_expressions(person, h
 
 
 def test_solids_have_a_spacing_and_a_platform_left_empty_is_sized_from_the_part(person, doc, rough):
-    part = doc.addObject("Part::Box", "Block")
-    part.Length, part.Width, part.Height = 150, 40, 16
+    box = doc.addObject("Part::Box", "Block")
+    box.Length, box.Width, box.Height = 150, 40, 16
     doc.recompute()
-    person.select(part)
+    person.select(box)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     spacing, width = person.field(panel, "BeadSpacing"), person.field(panel, "BeadWidth")
@@ -73,18 +74,18 @@ def test_solids_have_a_spacing_and_a_platform_left_empty_is_sized_from_the_part(
     cell, feature, toolpath = api.stages_of(doc)[:3]
     assert math.isclose(feature.LayerHeight.Value, 8.0)
     assert math.isclose(feature.BeadSpacing.Value, 8.0)
-    first = np.vstack([bead.points for bead in api.result(toolpath).layers[0].beads])
-    across = np.hypot(*np.ptp(first[:, :2], axis=0))  # from corner to corner
+    first_layer = np.vstack([bead.points for bead in api.result(toolpath).layers[0].beads])
+    across = np.hypot(*np.ptp(first_layer[:, :2], axis=0))  # from corner to corner
     assert 140.0 < across < cell.PlatformDiameter.Value < across + 20.0
 
 
 def test_a_width_that_is_entered_is_what_the_kind_is_proposed_by(person, doc):
-    part = doc.addObject("Part::Feature", "Cup")
+    cup = doc.addObject("Part::Feature", "Cup")
     import Part
 
-    part.Shape = Part.makeCylinder(40, 30).cut(Part.makeCylinder(36, 30))
+    cup.Shape = Part.makeCylinder(40, 30).cut(Part.makeCylinder(36, 30))
     doc.recompute()
-    person.select(part)
+    person.select(cup)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     left_out = person.field(panel, "left_out")

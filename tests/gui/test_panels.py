@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Panels: Apply keeps them open, expressions are typed, every field has help, previews go on beside the window."""
+"""Panels stay open after Apply, accept expressions, have help for every field, and compute previews
+next to a responsive window."""
 
 import gc
 import threading
@@ -25,7 +26,7 @@ def test_apply_makes_then_changes_in_a_step_each_and_cancel_leaves_it(person, he
     feature = document.getObject("Feature")
     assert panel.isVisible() and (feature.LayerHeight.Value, document.UndoCount) == (9.0, steps + 1)
     assert "up to date" in person.field(panel, "findings").text()
-    person.press("Apply")  # nothing was changed since
+    person.press("Apply")  # no value has changed since
     assert document.UndoCount == steps + 1
     person.type(panel, "LayerHeight", "-1 mm")
     person.press("Apply")
@@ -56,20 +57,20 @@ def test_after_undo_and_redo_the_fields_show_what_the_document_has(person, hand,
     y, branch, diameter = (
         person.field(panel, name) for name in ("DepositionPointY", "Branch", "PlatformDiameter")
     )
-    first = branch.currentText()
+    first_branch = branch.currentText()
     hand.enter(panel, "DepositionPointY", "60 mm")
     person.type(panel, "Branch", "front up flip")
-    hand.click(applies(person))  # which has the keys then
+    hand.click(applies(person))  # the button then has the focus
     person.until(lambda: document.UndoCount == steps + 1, "what is applied", 10)
     assert (cell.DepositionPoint.Base.y, cell.Branch, document.UndoCount) == (
         60.0,
         "front up flip",
         steps + 1,
     )
-    person.type(panel, "PlatformDiameter", "410 mm")  # and not applied
+    person.type(panel, "PlatformDiameter", "410 mm")  # not applied yet
     hand.undo()
     person.until(lambda: y.property("rawValue") == 50.0, "what the document has", 5)
-    assert (branch.currentText(), diameter.property("rawValue")) == (first, 410.0)
+    assert (branch.currentText(), diameter.property("rawValue")) == (first_branch, 410.0)
     hand.redo()
     person.until(lambda: y.property("rawValue") == 60.0, "what is done again", 5)
     hand.undo()
@@ -79,7 +80,7 @@ def test_after_undo_and_redo_the_fields_show_what_the_document_has(person, hand,
     person.panel_closed()
     assert (cell.DepositionPoint.Base.y, cell.Branch, cell.PlatformDiameter.Value) == (
         60.0,
-        first,
+        first_branch,
         410.0,
     )
 
@@ -87,39 +88,45 @@ def test_after_undo_and_redo_the_fields_show_what_the_document_has(person, hand,
 def test_undo_shows_every_kind_of_field_and_input_as_a_panel_that_is_opened_then_does(
     person, hemisphere
 ):
-    """Expressions, flags, counts, choices, lists, links and names."""
+    """Undo restores expressions, flags, counts, choices, lists, links and names."""
     document = hemisphere.Document
-    first, second = (
+    first_feature, second_feature = (
         api.make_feature(document, hemisphere, layer_height=15, chord_error=0.5) for _ in range(2)
     )
     cell = api.make_cell(document)
-    toolpath = api.make_toolpath(document, first, cell)
+    toolpath = api.make_toolpath(document, first_feature, cell)
     path = api.make_joint_path(document, toolpath, cell)
     program = api.make_program(document, path)
-    other = api.make_toolpath(document, second, cell)
+    second_toolpath = api.make_toolpath(document, second_feature, cell)
     for obj, values in (
-        (second, {"layer_height": "=7 mm + 8 mm", "path": "spiral"}),
-        (other, {"feature": first, "travel_speed": "=5 mm/s"}),
-        (path, {"toolpath": other, "method": "point-by-point", "rotation_range_low": -90}),
+        (second_feature, {"layer_height": "=7 mm + 8 mm", "path": "spiral"}),
+        (second_toolpath, {"feature": first_feature, "travel_speed": "=5 mm/s"}),
+        (
+            path,
+            {"toolpath": second_toolpath, "method": "point-by-point", "rotation_range_low": -90},
+        ),
         (program, {"name": "other", "dry_run": True, "max_points": 1000}),
     ):
         name = f"RoboticAM_{type(obj.Proxy).__name__}"
         attach.edit(obj)
         person.idle()
         panel = person.panel(name)
-        before = held(person, panel)
+        old_values = field_values(person, panel)
         api.change(obj, **values)
         person.press("Cancel")
         person.panel_closed()
         attach.edit(obj)
         person.idle()
         panel = person.panel(name)
-        after = held(person, panel)
-        assert len({key for key in after if after[key] != before[key]}) >= len(values) - 1, name
-        for command, wanted in (("Undo", before), ("Redo", after), ("Undo", before)):
+        new_values = field_values(person, panel)
+        assert (
+            len({key for key in new_values if new_values[key] != old_values[key]})
+            >= len(values) - 1
+        ), name
+        for command, expected in (("Undo", old_values), ("Redo", new_values), ("Undo", old_values)):
             person.gui.runCommand(f"Std_{command}")
             person.idle(0.2)
-            assert held(person, panel) == wanted, f"{name}, {command}"
+            assert field_values(person, panel) == expected, f"{name}, {command}"
         steps = document.UndoCount
         person.press("Ok")
         person.panel_closed()
@@ -132,16 +139,16 @@ def test_undo_shows_what_solids_claddings_and_curves_are_made_of(person):
     boxes[1].Placement.Base = App.Vector(40, 0, 0)
     document.recompute()
     coarse = {"layer_height": 5}
-    for make, first, fixtures in (
+    for make, source, fixtures in (
         (api.make_solid_feature, (boxes[0],), [boxes[1]]),
         (api.make_cladding_feature, (boxes[0], ["Face6"]), [boxes[1]]),
         (api.make_curves_feature, (boxes[0], ["Edge1"]), [boxes[1]]),
     ):
-        obj = make(document, *first, **({} if make is api.make_curves_feature else coarse))
+        obj = make(document, *source, **({} if make is api.make_curves_feature else coarse))
         attach.edit(obj)
         person.idle()
         panel = person.panel(f"RoboticAM_{type(obj.Proxy).__name__}")
-        before = person.field(panel, "Fixtures").text()
+        original_text = person.field(panel, "Fixtures").text()
         api.change(obj, fixtures=fixtures)
         person.gui.runCommand("Std_Undo")
         person.gui.runCommand("Std_Redo")
@@ -152,7 +159,9 @@ def test_undo_shows_what_solids_claddings_and_curves_are_made_of(person):
         )
         person.gui.runCommand("Std_Undo")
         person.until(
-            lambda panel=panel, before=before: person.field(panel, "Fixtures").text() == before,
+            lambda panel=panel, original_text=original_text: (
+                person.field(panel, "Fixtures").text() == original_text
+            ),
             "undone",
             5,
         )
@@ -163,13 +172,17 @@ def test_undo_shows_what_solids_claddings_and_curves_are_made_of(person):
 
 
 def applies(person):
-    """The button Apply of the panel that is open."""
-    boxes = [one for one in person.present(person.widgets.QDialogButtonBox) if one.isVisible()]
-    return next(filter(None, (one.button(person.widgets.QDialogButtonBox.Apply) for one in boxes)))
+    """Return the button Apply of the open panel."""
+    boxes = [box for box in person.present(person.widgets.QDialogButtonBox) if box.isVisible()]
+    return next(
+        filter(
+            None, (button_box.button(person.widgets.QDialogButtonBox.Apply) for button_box in boxes)
+        )
+    )
 
 
-def held(person, panel):
-    """What the fields of a panel show."""
+def field_values(person, panel):
+    """Return the texts in the fields of a panel."""
     w = person.widgets
     kinds = {
         w.QLineEdit: "text",
@@ -177,8 +190,8 @@ def held(person, panel):
         w.QCheckBox: "isChecked",
         w.QSpinBox: "value",
     }
-    found = {}
-    for kind, read in kinds.items():
+    values = {}
+    for kind, reader in kinds.items():
         for widget in panel.findChildren(kind):
             name = (
                 widget.objectName()
@@ -186,10 +199,12 @@ def held(person, panel):
                 else widget.parent().objectName()
             )
             if name and not name.startswith("qt_") and not name.endswith("Shown"):
-                found[name, read] = getattr(widget, read)()
-    for one in panel.findChildren(w.QListWidget, "FeatureOrder"):
-        found["FeatureOrder", ""] = [one.item(row).text() for row in range(one.count())]
-    return found
+                values[name, reader] = getattr(widget, reader)()
+    for list_widget in panel.findChildren(w.QListWidget, "FeatureOrder"):
+        values["FeatureOrder", ""] = [
+            list_widget.item(row).text() for row in range(list_widget.count())
+        ]
+    return values
 
 
 def test_apply_tells_in_the_panel_which_of_the_stages_that_follow_failed_and_why(
@@ -209,8 +224,8 @@ def test_apply_tells_in_the_panel_which_of_the_stages_that_follow_failed_and_why
     )
     assert (
         "exceeds the length of the wall" in following.text() and "\n" not in following.text()
-    )  # the joint path waits for it
-    assert findings.text() == "Status: up to date"  # the feature is
+    )  # the joint path depends on it
+    assert findings.text() == "Status: up to date"  # the feature is up to date
     hand.enter(panel, "LayerHeight", "15 mm")
     person.press("Apply")
     assert not following.isVisible() and document.JointPath.Status == "up to date"
@@ -280,7 +295,7 @@ def test_an_expression_is_typed_into_a_field_and_given_up_again(person, hand, he
     ],
 )
 def test_every_field_has_help(person, hemisphere, command):
-    if command in ("Toolpath", "JointPath", "Program"):  # tools that act on earlier stages
+    if command in ("Toolpath", "JointPath", "Program"):  # tools that need earlier stages
         feature = api.make_feature(hemisphere.Document, hemisphere, layer_height=15)
         cell = api.make_cell(hemisphere.Document)
         api.make_joint_path(
@@ -288,9 +303,9 @@ def test_every_field_has_help(person, hemisphere, command):
         )
     person.click(f"RoboticAM_{command}")
     panel = next(
-        one
-        for one in person.present(person.widgets.QWidget)
-        if one.objectName().startswith("RoboticAM_") and one.isVisible()
+        widget
+        for widget in person.present(person.widgets.QWidget)
+        if widget.objectName().startswith("RoboticAM_") and widget.isVisible()
     )
     kinds = (
         person.widgets.QLineEdit,
@@ -298,17 +313,18 @@ def test_every_field_has_help(person, hemisphere, command):
         person.widgets.QCheckBox,
         person.widgets.QAbstractSpinBox,
     )
-    fields = [one for kind in kinds for one in panel.findChildren(kind)]
+    fields = [field for kind in kinds for field in panel.findChildren(kind)]
     bare = [
-        one.objectName()
-        for one in fields
-        if not one.objectName().startswith("qt_") and not (one.toolTip() or one.parent().toolTip())
+        field.objectName()
+        for field in fields
+        if not field.objectName().startswith("qt_")
+        and not (field.toolTip() or field.parent().toolTip())
     ]
     mute = [
-        one.objectName()
-        for one in fields
-        if not one.objectName().startswith("qt_")
-        and not (one.whatsThis() or one.parent().whatsThis())
+        field.objectName()
+        for field in fields
+        if not field.objectName().startswith("qt_")
+        and not (field.whatsThis() or field.parent().whatsThis())
     ]
     assert len(fields) > 3
     assert (bare, mute) == ([], [])
@@ -324,26 +340,28 @@ def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(
     pipe.Radius, pipe.Height = 32, 160
     pipe.Placement = App.Placement(App.Vector(0, -80, 0), App.Rotation(App.Vector(1, 0, 0), -90))
     document.recompute()
-    part = api.open_part(document, str(root / "resources" / "examples" / "tube-on-pipe.step"))
-    begun, ended = [], []
+    imported_part = api.open_part(
+        document, str(root / "resources" / "examples" / "tube-on-pipe.step")
+    )
+    started, stopped = [], []
     prepare = SurfaceFeature.prepare
 
     def slow(self, obj):
         height, work = float(obj.LayerHeight), prepare(self, obj)
 
         def slowly():
-            begun.append(height)
+            started.append(height)
             try:
-                while height == 2.0:  # for ever
+                while height == 2.0:  # without end
                     time.sleep(0.01)
                 return work()
             finally:
-                ended.append(height)
+                stopped.append(height)
 
         return slowly
 
     monkeypatch.setattr(SurfaceFeature, "prepare", slow)
-    person.select(part, "Face1")
+    person.select(imported_part, "Face1")
     person.gui.Selection.addSelection(pipe)
     person.click("RoboticAM_WallOnPart")
     panel = person.panel("RoboticAM_SurfaceFeature")
@@ -351,20 +369,20 @@ def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(
     person.until(lambda: state.text().startswith("First layer"), "the preview", 60)
     person.type(panel, "LayerHeight", "2 mm")
     person.until(
-        lambda: "Computing the preview" in state.text() and 2.0 in begun,
+        lambda: "Computing the preview" in state.text() and 2.0 in started,
         "the preview that goes on",
         10,
     )
     person.type(panel, "LayerHeight", "3 mm")
     person.until(lambda: state.text().startswith("First layer"), "the newer preview", 60)
-    assert ended[-2:] == [2.0, 3.0]
+    assert stopped[-2:] == [2.0, 3.0]
     person.type(panel, "LayerHeight", "2 mm")
-    person.until(lambda: begun[-1] == 2.0, "another that goes on", 10)
-    person.press("Cancel")  # while it is computed
+    person.until(lambda: started[-1] == 2.0, "another that goes on", 10)
+    person.press("Cancel")  # during the computation
     person.panel_closed()
-    person.until(lambda: ended[-1] == 2.0, "its end", 10)
+    person.until(lambda: stopped[-1] == 2.0, "its end", 10)
     person.until(
-        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
+        lambda: not [thread for thread in threading.enumerate() if thread.name == "Robotic AM"],
         "the threads to end",
         10,
     )
@@ -390,54 +408,57 @@ def test_a_newer_entry_ends_the_preview_of_an_older_one_and_the_window_goes_on(
 def test_a_closed_panel_that_has_previewed_leaves_nothing_behind(
     person, joint_path, command, entries
 ):
-    """Neither widgets, which would be taken for later ones, nor threads, nor steps of undo."""
+    """The panel leaves no widgets that later ones could be mistaken for, no threads and no undo
+    steps."""
     document, steps = joint_path.Document, joint_path.Document.UndoCount
 
-    def shown(kind):
-        """Not by what the main window finds, which it keeps."""
+    def visible_widgets(kind):
+        """Return visible widgets without asking the main window, which would keep them."""
         return [
-            one
-            for one in person.widgets.QApplication.allWidgets()
-            if isinstance(one, kind) and one.isVisible()
+            widget
+            for widget in person.widgets.QApplication.allWidgets()
+            if isinstance(widget, kind) and widget.isVisible()
         ]
 
     def dead():
-        wrappers = [one for one in gc.get_objects() if isinstance(one, person.core.QObject)]
-        return [one for one in wrappers if not person.qt.isValid(one)]
+        wrappers = [
+            wrapper for wrapper in gc.get_objects() if isinstance(wrapper, person.core.QObject)
+        ]
+        return [wrapper for wrapper in wrappers if not person.qt.isValid(wrapper)]
 
     def enter(name, text):
         line = next(
-            one
+            widget
             for kind in (person.widgets.QComboBox, person.widgets.QLineEdit)
-            for one in shown(kind)
-            if one.objectName() == name
+            for widget in visible_widgets(kind)
+            if widget.objectName() == name
         )
         (line.setEditText if hasattr(line, "setEditText") else line.setText)(text)
 
     def cancel():
-        wanted = person.widgets.QDialogButtonBox.Cancel
+        button_kind = person.widgets.QDialogButtonBox.Cancel
         next(
-            box.button(wanted)
-            for box in shown(person.widgets.QDialogButtonBox)
-            if box.button(wanted) is not None
+            box.button(button_kind)
+            for box in visible_widgets(person.widgets.QDialogButtonBox)
+            if box.button(button_kind) is not None
         ).click()
 
     person.idle(0.5)
     gc.collect()
     gc.disable()
     try:
-        before = len(dead())
+        dead_count = len(dead())
         person.select(joint_path)
         person.click(f"RoboticAM_{command}")
         for name, text in entries:
-            person.idle(1.0)  # it is followed and previewed
+            person.idle(1.0)  # the panel updates and previews it
             enter(name, text)
-        person.idle(0.4)  # the last one is at work
+        person.idle(0.4)  # the last preview is being computed
         cancel()
         person.panel_closed()
-        person.until(lambda: len(dead()) <= before, "widgets to go with their panel", 10)
+        person.until(lambda: len(dead()) <= dead_count, "widgets to go with their panel", 10)
         person.until(
-            lambda: "Robotic AM" not in [one.name for one in threading.enumerate()],
+            lambda: "Robotic AM" not in [thread.name for thread in threading.enumerate()],
             "the threads to end",
             10,
         )
@@ -455,19 +476,19 @@ def test_the_wheel_scrolls_a_panel_and_changes_no_field(person, hand, hemisphere
     combo, spin = person.field(panel, "Direction"), person.field(panel, "TravelSpeed")
     for field in (combo, spin):
         hand.reveal(field)
-        before = (
+        original = (
             combo.currentText(),
             spin.property("rawValue"),
             field.mapToGlobal(person.core.QPoint(0, 0)),
         )
-        place = field.mapToGlobal(field.rect().center())
+        position = field.mapToGlobal(field.rect().center())
         for button in (5, 4, 4, 5):
-            hand.do("mousemove", place.x(), place.y(), "click", button)
-            assert (combo.currentText(), spin.property("rawValue")) == before[:2]
+            hand.do("mousemove", position.x(), position.y(), "click", button)
+            assert (combo.currentText(), spin.property("rawValue")) == original[:2]
         assert not field.hasFocus()
-    hand.do("mousemove", place.x(), place.y(), "click", 5)
-    hand.do("mousemove", place.x(), place.y(), "click", 5)
-    assert field.mapToGlobal(person.core.QPoint(0, 0)).y() < before[2].y(), (
+    hand.do("mousemove", position.x(), position.y(), "click", 5)
+    hand.do("mousemove", position.x(), position.y(), "click", 5)
+    assert field.mapToGlobal(person.core.QPoint(0, 0)).y() < original[2].y(), (
         "the panel has not scrolled"
     )
 
@@ -484,7 +505,7 @@ def test_a_tooltip_begins_with_the_name_of_its_tool(person, hemisphere):
 
 
 def test_fields_stay_in_place_while_messages_grow_and_go(person, hand, hemisphere):
-    """What is told is scrolled to where it is long; an error has its place too."""
+    """A long message scrolls, and an error has reserved room."""
     person.select(hemisphere)
     person.click("RoboticAM_Feature")
     panel = person.panel("RoboticAM_RevolutionFeature")
@@ -494,32 +515,35 @@ def test_fields_stay_in_place_while_messages_grow_and_go(person, hand, hemispher
         person.idle(0.2)
         return field.mapTo(panel, person.core.QPoint(0, 0)).y()
 
-    before = place()
+    original_place = place()
     person.until(lambda: state.text().startswith("Layers"), "the preview", 20)
-    assert place() == before
+    assert place() == original_place
     hand.enter(panel, "LayerHeight", "0 mm")
     person.until(lambda: state.text().startswith("No preview"), "that there is none", 5)
-    assert place() == before
+    assert place() == original_place
     state.setText("a line\n" * 20)
-    assert place() == before
+    assert place() == original_place
     bar = person.field(panel, "messages").verticalScrollBar()
-    assert bar.maximum() > 0  # the rest can be scrolled to
+    assert bar.maximum() > 0  # the rest is reached by scrolling
     person.press("Cancel")
     person.panel_closed()
 
 
 def test_what_changes_the_deposit_is_read_as_a_panel_opens(person, hemisphere):
-    """Above all fields, without scrolling: what of the part is left out, and that directions are tilted back."""
+    """The messages are above all fields, without scrolling: regions that are left out, and
+    directions that are tilted back."""
     document = hemisphere.Document
     toolpath = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=2))
     person.open_workbench()
     person.double_click(toolpath)
     panel = person.panel("RoboticAM_Toolpath")
-    told, box = person.field(panel, "findings"), person.field(panel, "messages")
-    assert "directions are tilted back" in told.text() and "are not deposited" in told.text()
+    findings, box = person.field(panel, "findings"), person.field(panel, "messages")
+    assert (
+        "directions are tilted back" in findings.text() and "are not deposited" in findings.text()
+    )
     assert (
         box.verticalScrollBar().maximum() == 0
-        and told.visibleRegion().boundingRect().height() == told.height()
+        and findings.visibleRegion().boundingRect().height() == findings.height()
     )
     person.screenshot("toolpath_panel_told")
     below = person.field(panel, "TravelSpeed").mapTo(panel, person.core.QPoint(0, 0)).y()
@@ -550,14 +574,14 @@ def test_what_an_empty_field_wants_is_read_whole_in_a_narrow_panel(
         if fold.isVisible() and fold.isCheckable() and not fold.isChecked() and fold.text():
             fold.click()
     person.idle(0.3)
-    cut, seen = [], 0
+    cut, count = [], 0
     for edit in person.present(person.widgets.QLineEdit):
         text = edit.placeholderText()
         if edit.isVisible() and text and not edit.text():
-            seen += 1
+            count += 1
             room = edit.width() - 10  # frame and margins
             if edit.fontMetrics().boundingRect(text).width() > room:
                 cut.append((text, room))
-    assert cut == [] and (seen or command not in ("Toolpath", "WallOnPart"))
+    assert cut == [] and (count or command not in ("Toolpath", "WallOnPart"))
     person.press("Cancel")
     person.panel_closed()

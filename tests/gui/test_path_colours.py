@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Joint paths coloured by what the machine has left, and by what it cannot do."""
+"""The colours of joint paths show the machine's reserves, and its infeasible points."""
 
 import numpy as np
 import pytest
@@ -11,13 +11,14 @@ from freecad_am.core.simulation.achievable_feed import speed_ratios
 from freecad_am.gui.colours import ramp
 from freecad_am.gui.path import colouring, legend
 
-RED = tuple(round(255 * part) for part in colouring.UNREACHABLE)
+RED = tuple(round(255 * channel) for channel in colouring.UNREACHABLE)
 
 
 def test_joint_paths_are_coloured_by_what_the_machine_has_left(person, joint_path):
     document, vobj = joint_path.Document, joint_path.ViewObject
     assert vobj.getEnumerationsOfProperty("Colouring") == list(colouring.JOINT_KINDS)
-    assert not document.Toolpath.ViewObject.Visibility  # it lies at the same place
+    # the toolpath is hidden, because it is at the same place
+    assert not document.Toolpath.ViewObject.Visibility
     planned = api.result(joint_path)
     motion, machine = planned.motion, machines.load(document.Cell.Machine)
     limits = machine.limits(planned.joint_path.limits)
@@ -48,7 +49,7 @@ def test_joint_paths_are_coloured_by_what_the_machine_has_left(person, joint_pat
     for kind in colouring.JOINT_KINDS:
         vobj.Colouring = kind
         person.idle()
-        assert [one.title for one in legend.visible_scales(document)] == [kind]
+        assert [scale_.title for scale_ in legend.visible_scales(document)] == [kind]
         person.screenshot(f"joint_path_{kind.replace(' ', '_')}")
 
 
@@ -69,7 +70,7 @@ def test_what_the_machine_cannot_do_has_colours_of_its_own(person):
         and not scale.below
     )
     assert np.array_equal(colours[[2, 3, 4]], ramp(np.array([0.1, 0.6, 1.1]) / 1.1))
-    # where nothing can be told, no number is: neither 0 nor a ramp
+    # without values there are no numbers: neither 0 nor a ramp
     scale = colouring.by_machine(np.full(3, np.nan), colouring.CONDITION)[1]
     assert scale.classes == (("unreachable", colouring.UNREACHABLE),) and scale.ticks == ()
     assert scale.text_at(1) == "condition unreachable"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a selection means: bodies within assemblies and links, faces by their own names, which of two is the wall."""
+"""The meaning of a selection: bodies in assemblies and links, faces by their own names, and which
+of two objects is the wall."""
 
 import FreeCAD as App
 import pytest
@@ -12,12 +13,13 @@ from freecad_am.objects.shapes.bodies import global_shape
 
 @pytest.fixture
 def assembly():
-    """A body of two features in a part that is moved, a link to each, a body of its own, and two plain objects."""
+    """Return a body of two features in a moved part, a link to each, a separate body, and two plain
+    objects."""
     document = App.newDocument("Assembly")
-    part = document.addObject("App::Part", "Part")
-    part.Placement = App.Placement(App.Vector(30, 0, 0), App.Rotation(App.Vector(0, 0, 1), 40))
+    container = document.addObject("App::Part", "Part")
+    container.Placement = App.Placement(App.Vector(30, 0, 0), App.Rotation(App.Vector(0, 0, 1), 40))
     body = document.addObject("PartDesign::Body", "Body")
-    part.addObject(body)
+    container.addObject(body)
     box = document.addObject("PartDesign::AdditiveBox", "Pad")
     bore = document.addObject("PartDesign::SubtractiveCylinder", "Bore")
     for feature in (box, bore):
@@ -28,7 +30,7 @@ def assembly():
     loose.Placement.Base = App.Vector(0, 0, 70)
     loose.addObject(document.addObject("PartDesign::AdditiveCylinder", "Hull"))
     links = [document.addObject("App::Link", name) for name in ("BodyLink", "PartLink")]
-    for link, target, move in zip(links, (body, part), (50, 90), strict=True):
+    for link, target, move in zip(links, (body, container), (50, 90), strict=True):
         link.LinkedObject = target
         link.Placement.Base = App.Vector(0, move, 0)
     document.addObject("Part::Box", "Block")
@@ -37,9 +39,9 @@ def assembly():
     return document
 
 
-def same_place(one, other):
-    return (one.CenterOfMass - other.CenterOfMass).Length < 1e-9 and abs(
-        one.Area - other.Area
+def same_place(shape, expected):
+    return (shape.CenterOfMass - expected.CenterOfMass).Length < 1e-9 and abs(
+        shape.Area - expected.Area
     ) < 1e-9
 
 
@@ -55,14 +57,15 @@ def same_place(one, other):
     ],
 )
 def test_a_face_is_the_same_face_of_the_object_it_belongs_to(person, assembly, top, path, name):
-    """Whatever the selection calls a face, the object's own face of the name found lies where the click was."""
+    """The face with the returned name in the owner is at the click, under whatever name the
+    selection has it."""
     obj = assembly.getObject(top)
     own_count = len(global_shape(assembly.getObject(name)).Faces)
     for number in range(1, own_count + 1):
         full = path.format(number)
-        picked, own = nested.owner_of(obj, full)
+        picked, own_name = nested.owner_of(obj, full)
         assert picked.Name == name
-        assert same_place(global_shape(picked).getElement(own), obj.getSubObject(full)), full
+        assert same_place(global_shape(picked).getElement(own_name), obj.getSubObject(full)), full
 
 
 def test_a_selection_in_an_assembly(person, assembly):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Preferences: what the page keeps is what panels propose and show; documents, jobs and macros do not depend on it."""
+"""Panels propose and show values of the preferences page; documents, jobs and macros do not depend
+on it."""
 
 import subprocess
 import sys
@@ -25,12 +26,12 @@ def clean():
 def page(person, clean):
     from freecad_am.gui.preferences_page import PreferencesPage
 
-    shown = PreferencesPage()
-    shown.loadSettings()
-    shown.form.show()
+    preferences_page = PreferencesPage()
+    preferences_page.loadSettings()
+    preferences_page.form.show()
     person.idle()
-    yield shown
-    shown.form.close()
+    yield preferences_page
+    preferences_page.form.close()
 
 
 def entries():
@@ -44,16 +45,18 @@ def test_without_entries_all_is_as_built_in_and_saving_the_page_adds_none(person
         and preferences.post() == ""
     )
     assert preferences.speed_unit() == "mm/s" and preferences.ramp() == "blue to yellow"
-    before = entries()  # folders that other tools remember
+    original_entries = entries()  # folders that other tools remember
     page.saveSettings()
-    assert entries() == before and not {"Machine", "Post", "SpeedUnit", "Ramp"} & set(before)
+    assert entries() == original_entries and not {"Machine", "Post", "SpeedUnit", "Ramp"} & set(
+        original_entries
+    )
 
 
 def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(
     person, hand, clean, hemisphere, tmp_path
 ):
-    """The dialog is modal: what is done in it is done by timers."""
-    done = []
+    """The dialog is modal, so timers operate it."""
+    finished = []
 
     def act():
         dialog = person.widgets.QApplication.activeModalWidget()
@@ -62,7 +65,7 @@ def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(
             return
         try:
             form = dialog.findChild(person.widgets.QWidget, "RoboticAM_Preferences")
-            done.append(form is not None)
+            finished.append(form is not None)
             form.findChild(person.widgets.QComboBox, "machine").setEditText("kuka-kr16-2")
             unit = form.findChild(person.widgets.QComboBox, "speedUnit")
             unit.setCurrentIndex(unit.findText("m/min"))
@@ -80,7 +83,7 @@ def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(
     person.gui.showPreferences("Robotic AM", 0)
     person.watch.awaited = ()
     person.idle(0.3)
-    assert done == [True]
+    assert finished == [True]
     assert preferences.machine() == "kuka-kr16-2" and preferences.process() == {
         "travel_speed": 12.0
     }
@@ -105,7 +108,7 @@ def test_the_page_is_in_freecads_dialog_and_what_is_typed_there_is_proposed(
     toolpath = api.stages_of(hemisphere.Document, "toolpath")[0]
     assert toolpath.TravelSpeed.getValueAs("mm/s").Value == pytest.approx(12.0)
     assert toolpath.RapidSpeed.getValueAs("mm/s").Value == pytest.approx(150.0)
-    # macros do not know of any of it
+    # macros ignore the preferences
     plain = api.make_toolpath(hemisphere.Document, hemisphere.Document.Feature)
     assert plain.TravelSpeed.getValueAs("mm/s").Value == pytest.approx(6.0)
     assert api.make_cell(hemisphere.Document).Machine == "fanuc-arcmate120ic"
@@ -153,7 +156,7 @@ def test_units_of_read_outs_and_colours(person, page, tmp_path):
 
 
 def _simulated(person, path):
-    """The simulation of a joint path, at its first bead."""
+    """Return the simulation of a joint path at its first bead."""
     from freecad_am.gui.simulation import dock as simulations
 
     person.select(path)
@@ -188,7 +191,7 @@ def test_what_is_drawn_and_told_follows_at_once(person, page, hemisphere):
     box = person.field(panel, "picture")
     box.setCurrentIndex(box.findData("travel"))
 
-    def drawn():
+    def current_view():
         dock = plots.only.dock
         person.until(
             lambda: (
@@ -202,10 +205,10 @@ def test_what_is_drawn_and_told_follows_at_once(person, page, hemisphere):
         return dock.picture.charts[0]
 
     simulation = _simulated(person, path)
-    before, colours = drawn(), view.path.colours.copy()
+    old_view, colours = current_view(), view.path.colours.copy()
 
     def coloured():
-        """How many pixels of the legend's corner are not grey."""
+        """Return how many pixels of the legend's corner are not grey."""
         file = str(person.folder / "legend.png")
         person.gui.activeDocument().activeView().saveImage(file, 600, 450, "White")
         image = person.widgets.QImage(file).convertToFormat(person.widgets.QImage.Format_RGB32)
@@ -216,32 +219,33 @@ def test_what_is_drawn_and_told_follows_at_once(person, page, hemisphere):
         )
         return int((np.ptp(corner, axis=2) > 40).sum())
 
-    simulation.close()  # which hides the path, and its legend
+    simulation.close()  # the simulation hides the path and its legend
     assert coloured() > 1000
     simulation = _simulated(person, path)
-    assert before.y.unit == "mm/s" and " 6 mm/s" in facts.text()
+    assert old_view.y.unit == "mm/s" and " 6 mm/s" in facts.text()
     page.unit.setCurrentIndex(page.unit.findText("mm/min"))
     page.ramp.setCurrentIndex(page.ramp.findData("grey"))
     page.colour.setProperty("color", person.widgets.QColor("#3366cc"))
     page.saveSettings()
     person.until(lambda: " 360 mm/min" in facts.text(), "the path's dock to follow")
-    person.until(lambda: drawn().y.unit == "mm/min", "the plots to follow")
-    after = drawn()
-    for one, other in zip(before.curves, after.curves):
-        np.testing.assert_allclose(other.y, 60.0 * one.y)
-        np.testing.assert_allclose(other.x, one.x)
-    assert after.span == pytest.approx((0.0, 60.0 * before.span[1]))
+    person.until(lambda: current_view().y.unit == "mm/min", "the plots to follow")
+    new_view = current_view()
+    for old_curve, new_curve in zip(old_view.curves, new_view.curves):
+        np.testing.assert_allclose(new_curve.y, 60.0 * old_curve.y)
+        np.testing.assert_allclose(new_curve.x, old_curve.x)
+    assert new_view.span == pytest.approx((0.0, 60.0 * old_view.span[1]))
     assert person.field(person.panel(simulations.NAME), "speed").text() == "360 mm/min"
     share = view.scale.share(view.scale.values)
-    wanted = np.rint(255.0 * ramp(share)).astype(int)
-    told = np.stack([view.path.colours >> shift & 255 for shift in (24, 16, 8)], axis=1)
-    assert (told == wanted).all() and (view.path.colours != colours).mean() > 0.9
+    expected = np.rint(255.0 * ramp(share)).astype(int)
+    shown_colours = np.stack([view.path.colours >> shift & 255 for shift in (24, 16, 8)], axis=1)
+    assert (shown_colours == expected).all() and (view.path.colours != colours).mean() > 0.9
     for links in (simulation.scene.machine, cell.ViewObject.Proxy.nodes.machine):
         plain = [
             material for link in links.materials for material, colour in link if colour is None
         ]
         assert plain and all(
-            np.allclose(one.diffuseColor[0].getValue(), (0.2, 0.4, 0.8), atol=1e-6) for one in plain
+            np.allclose(material.diffuseColor[0].getValue(), (0.2, 0.4, 0.8), atol=1e-6)
+            for material in plain
         )
     person.screenshot("preferences_at_once")
     simulation.close()
@@ -251,7 +255,7 @@ def test_what_is_drawn_and_told_follows_at_once(person, page, hemisphere):
     spin = maps._open[0]
     person.until(lambda: spin.canvas.painted is not None, "the map", 30)
     cells = spin.canvas.painted.colours.copy()
-    preferences.keep("Ramp", "violet to orange")  # not by the page
+    preferences.keep("Ramp", "violet to orange")  # a change outside the page
     person.until(lambda: (spin.canvas.painted.colours != cells).any(), "the map to follow")
     spin.close()
 
@@ -272,7 +276,7 @@ def test_what_cannot_be_is_told_and_not_kept(person, page):
 
 
 def test_without_a_window_preferences_count_for_nothing(person, clean, root, tmp_path):
-    """A Python of its own reads the same parameters, once FreeCAD has written them."""
+    """A separate Python reads the same parameters after FreeCAD has written them."""
     preferences.keep("Machine", "kuka-kr16-2")
     App.saveParameter()
     code = (
@@ -281,7 +285,7 @@ def test_without_a_window_preferences_count_for_nothing(person, clean, root, tmp
         "print(FreeCAD.ParamGet(p.GROUP).GetString('Machine', ''), p.machine(), p.process())"
     )
     python = "/usr/bin/python3" if "freecad" in sys.executable.lower() else sys.executable
-    done = subprocess.run(
+    process = subprocess.run(
         [python, "-c", code, str(root)], capture_output=True, text=True, timeout=60
     )
-    assert done.stdout.split() == ["kuka-kr16-2", "fanuc-arcmate120ic", "{}"], done.stderr
+    assert process.stdout.split() == ["kuka-kr16-2", "fanuc-arcmate120ic", "{}"], process.stderr

@@ -13,8 +13,8 @@ import pytest
 from freecad_am.gui.tools import commands
 from tests.window import ROOT, private_home
 
-TIMEOUT = 90  # s
-# ends FreeCAD's window with what came of the macro
+TIMEOUT_S = 90  # s
+# ends FreeCAD's window with the result of the macro
 CHECK = """
 import os, FreeCAD
 stages = [
@@ -34,7 +34,7 @@ class Recorder:
         self.person, self.folder, self.is_on = person, folder, False
 
     def start(self, name):
-        """Begin to record into a macro of this name."""
+        """Start recording into a macro of this name."""
         App.ParamGet("User parameter:BaseApp/Preferences/Macro").SetString(
             "MacroPath", f"{self.folder}/"
         )
@@ -44,7 +44,7 @@ class Recorder:
         def fill():
             dialog = widgets.QApplication.activeModalWidget()
             lines = [] if dialog is None else dialog.findChildren(widgets.QLineEdit, "lineEditPath")
-            if not lines:  # a busy machine takes its time to show it
+            if not lines:  # a busy machine shows it late
                 timer.start(100)
                 return
             lines[0].setText(name)
@@ -61,7 +61,7 @@ class Recorder:
         self.person.idle(0.2)
 
     def stop(self):
-        """Stop; the file that was written."""
+        """Stop recording and return the written file."""
         self.is_on = False
         self.person.gui.runCommand(
             "Std_MacroStopRecord" if int(App.Version()[0]) < 1 else "Std_DlgMacroRecord"
@@ -76,28 +76,28 @@ def recorder(person, tmp_path):
     folder.mkdir()
     someone = Recorder(person, folder)
     yield someone
-    if someone.is_on:  # the test failed; the next one records anew
+    if someone.is_on:  # the test failed; the next one starts its own recording
         someone.stop()
 
 
 def _play(macro, tmp_path, window):
-    """The stages that a macro makes in a FreeCAD of its own, and what that FreeCAD writes."""
+    """Run a macro in a separate FreeCAD, and return the stages that it makes and the output."""
     home, result = tmp_path / f"home{window}", tmp_path / f"result{window}"
     home.mkdir()
     played = tmp_path / f"played{window}.FCMacro"
     text = macro.read_text(encoding="utf-8")
     played.write_text(text + CHECK.format(result=str(result), window=window), encoding="utf-8")
     program = shutil.which("freecad" if window else "freecadcmd")
-    # a window that stays open because its macro failed is ended, and its output read
-    ended = subprocess.run(
-        ["timeout", str(TIMEOUT), program, str(played)],
+    # end a window that stays open because its macro failed, and read its output
+    process = subprocess.run(
+        ["timeout", str(TIMEOUT_S), program, str(played)],
         env=private_home(home),
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
         check=False,
     )
-    output = ended.stdout + ended.stderr
+    output = process.stdout + process.stderr
     return (result.read_text() if result.exists() else "the macro did not end"), output
 
 
@@ -126,14 +126,14 @@ def test_a_recorded_job_runs_again(person, recorder, tmp_path, window):
     text = macro.read_text(encoding="utf-8")
     assert "am.make_all(" in text and "am.change(" in text
     expected = repr([(obj.Name, obj.Status) for obj in document.Objects if hasattr(obj, "Status")])
-    made, output = _play(macro, tmp_path, window)
-    assert made == expected, output[-2000:]
+    stages, output = _play(macro, tmp_path, window)
+    assert stages == expected, output[-2000:]
 
 
 def test_every_command_records_a_module_that_can_be_imported(person, recorder, hemisphere):
     recorder.start("commands")
     for name in [*commands.TOOLS, "Help"]:
-        if name in ("OpenPart", "NewMachine"):  # they ask in a dialog of their own
+        if name in ("OpenPart", "NewMachine"):  # they open a dialog of their own
             continue
         person.gui.runCommand(f"RoboticAM_{name}")
         person.idle(0.05)
@@ -147,7 +147,7 @@ def test_every_command_records_a_module_that_can_be_imported(person, recorder, h
         f"sys.path[:0] = [{str(ROOT)!r}]\n"
         f"[importlib.import_module(name) for name in {sorted(names - {'FreeCAD', 'PartGui'})!r}]"
     )
-    ended = subprocess.run(
+    process = subprocess.run(
         [shutil.which("python3", path="/usr/bin") or sys.executable, "-c", python],
         capture_output=True,
         text=True,
@@ -155,4 +155,4 @@ def test_every_command_records_a_module_that_can_be_imported(person, recorder, h
         env={"PATH": os.environ["PATH"]},
         check=False,
     )
-    assert ended.returncode == 0, ended.stderr
+    assert process.returncode == 0, process.stderr

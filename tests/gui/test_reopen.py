@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Files show everything at once when they are opened, wherever they were made."""
+"""Files show everything when they are opened, wherever they were made."""
 
 import subprocess
 
@@ -39,7 +39,7 @@ def columns(document):
 
 def assert_shown(person, document):
     for obj in api.stages_of(document):
-        covered = obj.Name == "Toolpath"  # by the joint path, which lies at the same place
+        covered = obj.Name == "Toolpath"  # hidden by the joint path, which is at the same place
         assert obj.ViewObject.Proxy is not None and obj.ViewObject.Visibility != covered, obj.Label
         assert obj.Status == "up to date" and "Touched" not in obj.State
     person.path_is_seen()
@@ -61,8 +61,8 @@ def test_saved_closed_and_opened_again(person, hemisphere, coarse, tmp_path):
     person.screenshot("reopened")
     arrays_again, files_again = columns(again)
     assert files_again == files
-    for one, other in zip(arrays, arrays_again, strict=True):
-        assert np.array_equal(one, other, equal_nan=True)
+    for array, reopened_array in zip(arrays, arrays_again, strict=True):
+        assert np.array_equal(array, reopened_array, equal_nan=True)
 
 
 def test_opening_reads_what_is_drawn_alone(person, hemisphere, coarse, tmp_path, monkeypatch):
@@ -72,34 +72,44 @@ def test_opening_reads_what_is_drawn_alone(person, hemisphere, coarse, tmp_path,
     person.idle(0.2)
     document.saveAs(path)
     App.closeDocument(document.Name)
-    read, unpack = [], store.unpack
-    monkeypatch.setattr(store, "unpack", lambda *given: read.append(given[3]) or unpack(*given))
+    read_parts, unpack = [], store.unpack
+    monkeypatch.setattr(
+        store, "unpack", lambda *arguments: read_parts.append(arguments[3]) or unpack(*arguments)
+    )
     again = App.openDocument(path)
     person.idle(0.4)
     assert_shown(person, again)
-    assert not {again.Toolpath.Label, again.JointPath.Label, again.Program.Label} & set(read)
+    assert not {again.Toolpath.Label, again.JointPath.Label, again.Program.Label} & set(read_parts)
     view = again.JointPath.ViewObject.Proxy
     rows, margin = view.rows, view.scale.values
     person.select(again.JointPath)
-    person.click("RoboticAM_Path")  # which tells of the last bead
-    shown = person.field(person.panel("RoboticAM_PathDock"), "facts")
-    assert shown.text().endswith(facts(rows, len(rows) - 1)) and again.JointPath.Label not in read
-    told = facts(rows, len(rows) - 2)
-    assert again.JointPath.Label not in read
+    person.click("RoboticAM_Path")  # the dock describes the last bead
+    facts_field = person.field(person.panel("RoboticAM_PathDock"), "facts")
+    assert (
+        facts_field.text().endswith(facts(rows, len(rows) - 1))
+        and again.JointPath.Label not in read_parts
+    )
+    expected_facts = facts(rows, len(rows) - 2)
+    assert again.JointPath.Label not in read_parts
     again.JointPath.ViewObject.Look = "tubes"
-    assert read.count(again.JointPath.Label) == 1
+    assert read_parts.count(again.JointPath.Label) == 1
     planned = api.result(again.JointPath)
-    assert read.count(again.JointPath.Label) == 1
+    assert read_parts.count(again.JointPath.Label) == 1
     paths = planned.joint_path.beads
-    whole = Rows.of([one.bead for one in paths], [one.layer for one in paths], 8.0, lambda: 1.0)
+    all_rows = Rows.of(
+        [bead_path.bead for bead_path in paths],
+        [bead_path.layer for bead_path in paths],
+        8.0,
+        lambda: 1.0,
+    )
     for name in ("points", "starts", "layers", "width"):
-        assert np.array_equal(getattr(rows, name), getattr(whole, name)), name
+        assert np.array_equal(getattr(rows, name), getattr(all_rows, name)), name
     assert len(rows.beads) == len(paths) and all(
-        one is path.bead for one, path in zip(rows.beads, paths, strict=True)
+        row_bead is path.bead for row_bead, path in zip(rows.beads, paths, strict=True)
     )
     assert (
-        facts(rows, len(rows) - 2) == told and facts(rows, 0) != told
-    )  # as when the bead was read alone
+        facts(rows, len(rows) - 2) == expected_facts and facts(rows, 0) != expected_facts
+    )  # equal to reading only this bead
     assert margin.shape == (len(rows),) and 0.0 < margin.min() < margin.max() <= 100.0
 
 
@@ -110,7 +120,7 @@ def test_a_document_made_without_a_window_shows_its_path(person, root, tmp_path)
     document = App.openDocument(path)
     person.idle(0.4)
     height = person.gui.ActiveDocument.ActiveView.getCameraNode().height.getValue()
-    assert 90 < height < 600  # all is in sight before the camera is touched
+    assert 90 < height < 600  # everything is visible before the camera moves
     assert_shown(person, document)
     person.double_click(document.Feature)
     person.panel("RoboticAM_RevolutionFeature")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What may go wrong while things are open: undo, redo, copies, closed documents, with every dock and panel looking on."""
+"""Undo, redo, copies and closed documents while every dock and panel is open."""
 
 import subprocess
 import threading
@@ -18,7 +18,7 @@ DOCKS = ("Path", "Plots", "SpinMap", "Simulate")
 
 @pytest.fixture
 def job(person, hemisphere):
-    """The document of a job of few layers, in its group."""
+    """Return the document of a job of few layers, in its group."""
     doc = hemisphere.Document
     cell, feature = (
         api.make_cell(doc, limits="paper"),
@@ -44,7 +44,7 @@ def docks(person):
 
 @pytest.fixture
 def watched(person, job, rough_map):
-    """The job, with all docks that look at it open."""
+    """Return the job with all docks open on it."""
     for name in DOCKS:
         person.select(job.JointPath)
         person.gui.runCommand(f"RoboticAM_{name}")
@@ -56,7 +56,7 @@ def watched(person, job, rough_map):
 
 
 def focus(person, hand):
-    """Click beside the part, so that the keys go to the 3D view."""
+    """Click next to the part, so that the keys go to the 3D view."""
     view = person.gui.activeDocument().activeView()
     corner = hand.corner(view)
     hand.at((corner.x() + 6, corner.y() + view.getSize()[1] - 6))
@@ -101,34 +101,34 @@ def test_a_stage_deleted_under_open_docks(person, watched):
 
 
 def test_a_document_closed_under_open_docks(person, watched, coarse):
-    other = App.newDocument("Other")
+    other_document = App.newDocument("Other")
     App.closeDocument(watched.Name)
     person.idle(1.0)
-    ball = other.addObject("Part::Sphere", "Ball")
+    ball = other_document.addObject("Part::Sphere", "Ball")
     ball.Angle1 = 0
-    other.recompute()
-    api.make_all(other, ball)
+    other_document.recompute()
+    api.make_all(other_document, ball)
     person.idle(0.5)
     for name in DOCKS:
-        person.select(other.JointPath)
+        person.select(other_document.JointPath)
         person.gui.runCommand(f"RoboticAM_{name}")
         person.idle(0.4)
-    assert len(statuses(other)) >= 4
+    assert len(statuses(other_document)) >= 4
 
 
 def test_a_document_closed_while_a_preview_is_with_the_kernel(person, monkeypatch):
-    """The preview's call of the kernel is in another process: it ends with the panel."""
+    """The preview's kernel call runs in another process, which ends with the panel."""
     monkeypatch.setattr(kernel_process, "MAX_FACES", 0)
     doc = App.newDocument("Preview")
     blades = api.open_part(doc, str(EXAMPLES / "thruster" / "blades.brep"))
     spindle = api.open_part(doc, str(EXAMPLES / "thruster" / "spindle.step"))
     person.gui.Selection.clearSelection()
-    for part in (blades, spindle):
-        person.gui.Selection.addSelection(doc.Name, part.Name)
+    for obj in (blades, spindle):
+        person.gui.Selection.addSelection(doc.Name, obj.Name)
     person.click("RoboticAM_SolidsOnHub")
     panel = person.panel("RoboticAM_DevelopableFeature")
     person.until(
-        lambda: [one for one in threading.enumerate() if one.name == "Kernel process"],
+        lambda: [thread for thread in threading.enumerate() if thread.name == "Kernel process"],
         "the preview to begin",
         20,
     )
@@ -140,7 +140,7 @@ def test_a_document_closed_while_a_preview_is_with_the_kernel(person, monkeypatc
     person.panel_closed()
     del panel
     person.until(
-        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
+        lambda: not [thread for thread in threading.enumerate() if thread.name == "Robotic AM"],
         "the work to end",
         20,
     )
@@ -148,7 +148,8 @@ def test_a_document_closed_while_a_preview_is_with_the_kernel(person, monkeypatc
 
 
 def test_the_window_finds_a_python_for_the_kernel(person, monkeypatch):
-    """FreeCAD's own program is none; without another one the window would wait for the kernel as before."""
+    """FreeCAD's own program is not a Python; without another one the window would wait for the
+    kernel."""
     monkeypatch.setattr(kernel_process, "MAX_FACES", 0)
     doc = App.newDocument("Kernel")
     pipe = api.open_part(doc, str(EXAMPLES / "pipe.step"))
@@ -159,7 +160,8 @@ def test_the_window_finds_a_python_for_the_kernel(person, monkeypatch):
 
 
 def test_a_preview_after_the_kernel_process_has_left(person, monkeypatch):
-    """It leaves after some minutes without work; the next preview has another one, and FreeCAD goes on."""
+    """The process ends after some minutes without work; the next preview starts another one, and
+    FreeCAD continues."""
     monkeypatch.setattr(kernel_process, "MAX_FACES", 0)
     doc = App.newDocument("Later")
     pipe = api.open_part(doc, str(EXAMPLES / "pipe.step"))
@@ -183,27 +185,30 @@ def test_a_preview_after_the_kernel_process_has_left(person, monkeypatch):
             20,
         )
 
-    before = previewed()
-    for popen in before:
+    old_preview = previewed()
+    for popen in old_preview:
         popen.terminate()
         popen.wait(20)
-    after = previewed()
-    assert not set(before) & set(after) and [popen.poll() for popen in after] == [None] * len(after)
+    new_preview = previewed()
+    assert not set(old_preview) & set(new_preview) and [popen.poll() for popen in new_preview] == [
+        None
+    ] * len(new_preview)
 
 
 def test_a_job_copied_by_keys_into_another_document(person, hand, job):
-    """FreeCAD asks what to copy along, as for everything that has inputs; Return takes all of it."""
-    other = App.newDocument("Copy")
+    """FreeCAD asks which objects to copy along, as for every object with inputs; Return takes all
+    of them."""
+    target = App.newDocument("Copy")
     person.gui.ActiveDocument = person.gui.getDocument(job.Name)
     App.setActiveDocument(job.Name)
     person.idle(0.3)
     person.select(next(obj for obj in job.Objects if is_group(obj)))
-    asked = []
+    questions = []
 
     def answer():
         box = person.widgets.QApplication.activeModalWidget()
         if box is not None and box.objectName() != "RoboticAM_Progress":
-            asked.append(box.windowTitle())
+            questions.append(box.windowTitle())
             subprocess.Popen(["xdotool", "key", "Return"])
 
     timer = person.core.QTimer()
@@ -212,23 +217,23 @@ def test_a_job_copied_by_keys_into_another_document(person, hand, job):
     timer.start()
     person.gui.runCommand("Std_Copy")
     person.idle(0.5)
-    person.gui.ActiveDocument = person.gui.getDocument(other.Name)
-    App.setActiveDocument(other.Name)
+    person.gui.ActiveDocument = person.gui.getDocument(target.Name)
+    App.setActiveDocument(target.Name)
     person.idle(0.3)
     person.gui.runCommand("Std_Paste")
     person.idle(0.5)
     timer.stop()
-    other.recompute()
+    target.recompute()
     assert (
-        len(asked) <= 1
-        and len(api.stages_of(other)) == 5
-        and set(statuses(other)) == {"up to date"}
+        len(questions) <= 1
+        and len(api.stages_of(target)) == 5
+        and set(statuses(target)) == {"up to date"}
     )
-    assert all(link.Document == other for obj in api.stages_of(other) for link in obj.OutList)
+    assert all(link.Document == target for obj in api.stages_of(target) for link in obj.OutList)
     App.closeDocument(job.Name)
     person.idle(0.3)
-    api.change(other.getObject(api.stages_of(other, "feature")[0].Name), layer_height=20)
-    assert set(statuses(other)) == {"up to date"}
+    api.change(target.getObject(api.stages_of(target, "feature")[0].Name), layer_height=20)
+    assert set(statuses(target)) == {"up to date"}
 
 
 @pytest.mark.any_version

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The recorded samples open with all they hold, and nothing is computed for that."""
+"""The recorded samples open completely, without computing anything."""
 
 import shutil
 import zipfile
@@ -12,14 +12,14 @@ from freecad_am import api
 from freecad_am.gui.path import legend
 from freecad_am.objects.stage import Stage
 
-ROOM = 1_500_000  # bytes
-SAMPLES = {"hemisphere": 15, "tube-on-pipe": 15}  # and their layers
+MAX_BYTES = 1_500_000  # bytes
+SAMPLES = {"hemisphere": 15, "tube-on-pipe": 15}  # the samples and their numbers of layers
 
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_a_sample_is_there_at_once(person, root, tmp_path, monkeypatch, name):
     file = root / "resources" / "examples" / "samples" / f"{name}.FCStd"
-    assert file.stat().st_size < ROOM
+    assert file.stat().st_size < MAX_BYTES
     path = shutil.copy(file, tmp_path)
     computed = []
     monkeypatch.setattr(Stage, "execute", lambda self, obj: computed.append(obj.Label))
@@ -36,7 +36,8 @@ def test_a_sample_is_there_at_once(person, root, tmp_path, monkeypatch, name):
         "joint path",
         "program",
     }
-    # FreeCAD 1.0 touches imported shapes of earlier versions, for its names of faces; our stages stay as they are
+    # FreeCAD 1.0 touches imported shapes of earlier versions, for its names of faces; the stages
+    # stay up to date
     assert computed == [] and [stage.Label for stage in stages if "Touched" in stage.State] == []
     assert document.Toolpath.Layers == len(api.result(document.Toolpath).layers) == SAMPLES[name]
     assert np.isfinite(api.result(document.JointPath).motion.joints).all()

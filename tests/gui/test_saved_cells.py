@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A cell saved by its context menu, and chosen by its name for the next job."""
+"""A cell is saved by its context menu, and chosen by its name for the next job."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -23,18 +23,21 @@ def test_a_saved_cell_is_chosen_by_name_in_new_job(
         branch="auto",
         nozzle_tool=(0, 0, 150, 0, 0, 0),
     )
-    wanted = api.result(cell)
-    asked = []
+    expected = api.result(cell)
+    proposed_names = []
 
-    def chosen(_window, _title, first, _kinds):
-        asked.append(first)
+    def choose_file(_window, _title, proposed, _kinds):
+        proposed_names.append(proposed)
         return str(tmp_path / "cells" / "hall 3"), ""
 
-    monkeypatch.setattr(context_menu.QtGui.QFileDialog, "getSaveFileName", chosen)
-    found, _menu = entries(person, cell)
-    found["SaveCell"].trigger()
+    monkeypatch.setattr(context_menu.QtGui.QFileDialog, "getSaveFileName", choose_file)
+    menu_entries, _menu = entries(person, cell)
+    menu_entries["SaveCell"].trigger()
     path = tmp_path / "cells" / "hall 3.yaml"
-    assert asked == [str(tmp_path / "cells" / "Cell.yaml")] and api.read_cell(str(path)) == wanted
+    assert (
+        proposed_names == [str(tmp_path / "cells" / "Cell.yaml")]
+        and api.read_cell(str(path)) == expected
+    )
     doc.removeObject(cell.Name)
 
     person.select(hemisphere)
@@ -46,12 +49,12 @@ def test_a_saved_cell_is_chosen_by_name_in_new_job(
     person.as_revolution()
     person.press("Ok")
     person.panel_closed()
-    made = api.stages_of(doc)
-    assert [obj.Proxy.kind for obj in made][:1] == ["cell"] and api.result(made[0]) == wanted
+    stages = api.stages_of(doc)
+    assert [obj.Proxy.kind for obj in stages][:1] == ["cell"] and api.result(stages[0]) == expected
 
 
 def test_a_frame_is_typed_as_its_pendant_shows_it(person, hemisphere):
-    """What the six fields then hold is held against rotations put together here."""
+    """The values in the six fields equal a rotation composed here."""
     doc = hemisphere.Document
     person.click("RoboticAM_Cell")
     panel = person.panel("RoboticAM_Cell")
@@ -65,18 +68,18 @@ def test_a_frame_is_typed_as_its_pendant_shows_it(person, hemisphere):
     person.type(panel, "DepositionPointShown", "1000 -20 300 90 30 0")
     line.editingFinished.emit()
     choice.setCurrentIndex(choice.findData("abb"))
-    x, y, z, *shown = map(float, line.text().split())
+    x, y, z, *quaternion_ = map(float, line.text().split())
     # R = Rz(90) Ry(30): half angles of 45 and 15 deg
-    wanted = Rotation.from_euler("ZY", [90.0, 30.0], degrees=True)
+    expected = Rotation.from_euler("ZY", [90.0, 30.0], degrees=True)
     assert (x, y, z) == (1000.0, -20.0, 300.0) and np.allclose(
-        shown, np.roll(wanted.as_quat(), 1), atol=1e-6
+        quaternion_, np.roll(expected.as_quat(), 1), atol=1e-6
     )
     person.type(panel, "DepositionPointShown", "1000 -20 300 0.9 0.9 0 0")
     line.editingFinished.emit()
-    assert "quaternion" in line.toolTip()  # and the fields stay as they are
+    assert "quaternion" in line.toolTip()  # the fields stay unchanged
     person.press("Ok")
     person.panel_closed()
     pose = api.result(doc.Cell).deposition_point
     assert np.allclose(pose[:3], (1000.0, -20.0, 300.0)) and np.allclose(
-        Rotation.from_euler("XYZ", pose[3:]).as_matrix(), wanted.as_matrix(), atol=1e-9
+        Rotation.from_euler("XYZ", pose[3:]).as_matrix(), expected.as_matrix(), atol=1e-9
     )

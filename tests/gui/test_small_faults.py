@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Words, titles and sizes that users stumbled over."""
+"""Texts, titles and sizes that have confused users."""
 
 import FreeCAD as App
 import pytest
@@ -30,15 +30,15 @@ def test_a_toolpath_asks_for_any_of_the_tools_that_make_features(person):
 def test_the_status_bar_does_not_go_on_asking_for_what_is_there(person, hemisphere):
     bar, tool = person.window.statusBar(), commands.TOOLS["Toolpath"]
     assert not tool.IsActive()
-    asked = person.button("RoboticAM_Toolpath").defaultAction().statusTip()
-    assert "First make a feature" in asked
-    bar.showMessage(asked)  # as with the pointer on it
+    status_tip = person.button("RoboticAM_Toolpath").defaultAction().statusTip()
+    assert "First make a feature" in status_tip
+    bar.showMessage(status_tip)  # as with the pointer on it
     api.make_feature(hemisphere.Document, hemisphere, layer_height=15)
     assert tool.IsActive()
     assert bar.currentMessage() == ""
-    bar.showMessage(asked)
+    bar.showMessage(status_tip)
     person.gui.runCommand("RoboticAM_Toolpath")
-    assert bar.currentMessage() != asked
+    assert bar.currentMessage() != status_tip
     person.press("Cancel")
     person.panel_closed()
 
@@ -75,12 +75,12 @@ def test_the_path_of_a_file_is_read_in_the_panel_of_an_inspection(person, hemisp
 def test_the_map_has_words_for_its_fields(person, joint_path):
     person.select(joint_path)
     person.click("RoboticAM_SpinMap")
-    shown = map_tool._open[0]
-    labels = [label.text() for label in shown.controls.names if label.isVisible()]
+    dock = map_tool._open[0]
+    labels = [label.text() for label in dock.controls.names if label.isVisible()]
     assert labels[0] == "RZ at the start" and not any(text.startswith("c") for text in labels)
     heads = [
-        shown.figures.horizontalHeaderItem(column).text()
-        for column in range(shown.figures.columnCount())
+        dock.figures.horizontalHeaderItem(column).text()
+        for column in range(dock.figures.columnCount())
     ]
     assert "Criterion" in heads and not any("Eq" in text for text in heads)
 
@@ -117,15 +117,15 @@ def test_a_note_that_has_gone_leaves_no_gap(person, hemisphere):
     def place():
         return below.mapTo(panel, person.core.QPoint(0, 0)).y()
 
-    before = place()
+    original_place = place()
     person.type(panel, "LayerHeight", "-1 mm")
     person.until(lambda: person.field(panel, "LayerHeightNote").isVisible(), "the note", 5)
     person.idle(0.2)
-    assert place() > before
+    assert place() > original_place
     person.type(panel, "LayerHeight", "2 mm")
     person.until(lambda: not person.field(panel, "LayerHeightNote").isVisible(), "its end", 5)
-    assert place() > before  # the next click is not missed
-    person.until(lambda: place() == before, "the gap to close", KEEP_MS / 1000.0 + 5)
+    assert place() > original_place  # the next click hits its target
+    person.until(lambda: place() == original_place, "the gap to close", KEEP_MS / 1000.0 + 5)
     person.press("Cancel")
     person.panel_closed()
 
@@ -142,8 +142,12 @@ def test_the_panel_and_the_properties_of_a_program_show_what_its_post_reads(pers
     assert all(program.getEditorMode(name) == ["Hidden"] for name in names)
     program.Post = "siemens"
     person.idle(0.1)
-    shown = {name for name in names if program.getEditorMode(name) == []}
-    assert {"NcFeed", "NcCompress", "NcSmooth"} <= shown and "NcTolerance" not in shown
+    visible_names = {name for name in names if program.getEditorMode(name) == []}
+    assert {
+        "NcFeed",
+        "NcCompress",
+        "NcSmooth",
+    } <= visible_names and "NcTolerance" not in visible_names
     program.Post = "fanuc"
     registry.edit(program)
     panel = person.panel("RoboticAM_Program")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A wall on a substrate in the window: shown, its panel opens, and what it grows on can be chosen."""
+"""A wall on a substrate in the window: it is visible, its panel opens, and the user can choose the
+substrate."""
 
 from types import SimpleNamespace
 
@@ -12,8 +13,8 @@ from freecad_am.gui import registry
 from freecad_am.gui.nodes.wall import WallNodes, first_curves
 
 
-def on_a_pipe(hemisphere):
-    """A document with a branch on a pipe, and its feature."""
+def make_branch(hemisphere):
+    """Return a document with a branch on a pipe, and its feature."""
     document = hemisphere.Document
     pipe = document.addObject("Part::Cylinder", "Pipe")
     pipe.Radius, pipe.Height = 32, 120
@@ -28,7 +29,7 @@ def on_a_pipe(hemisphere):
 
 
 def test_a_wall_on_a_substrate_is_shown_and_its_panel_opens(person, hemisphere):
-    document, feature = on_a_pipe(hemisphere)
+    document, feature = make_branch(hemisphere)
     toolpath = api.make_toolpath(document, feature)
     assert feature.Status == toolpath.Status == "up to date"
     view = feature.ViewObject.Proxy.wall
@@ -36,17 +37,17 @@ def test_a_wall_on_a_substrate_is_shown_and_its_panel_opens(person, hemisphere):
         view.first.coordinates.point.getNum() > 100
         and view.faces.triangles.coordIndex.getNum() > 20
     )
-    before = feature.Key
+    original_key = feature.Key
     registry.edit(feature)
     panel = person.panel("RoboticAM_SurfaceFeature")
     assert person.field(panel, "Substrate").text() == "Pipe"
     person.press("Ok")
     person.panel_closed()
-    assert feature.Key == before
+    assert feature.Key == original_key
 
 
 def test_another_substrate_is_chosen_in_the_panel(person, hemisphere):
-    document, feature = on_a_pipe(hemisphere)
+    document, feature = make_branch(hemisphere)
     block = document.addObject("Part::Box", "Block")
     block.Length = block.Width = 100
     block.Height = 20
@@ -66,7 +67,7 @@ def test_another_substrate_is_chosen_in_the_panel(person, hemisphere):
 
 
 def test_the_first_layers_of_any_wall_are_drawn(person):
-    """Closed ones join up, open ones do not, and each is a line of its own."""
+    """Closed first layers join up, open ones do not, and each is a separate line."""
     turn = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
     ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(12)], axis=1)
     curves = (

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A document counts as changed after a change alone: not when it is opened, nor when panels and docks of its stages are."""
+"""A document counts as changed only after a change: not after opening it, or opening panels and
+docks of its stages."""
 
 import FreeCAD as App
 import pytest
@@ -17,13 +18,13 @@ PANELS = {
 }
 
 
-def touched(document):
+def touched_objects(document):
     return [obj.Label for obj in document.Objects if "Touched" in obj.State]
 
 
 @pytest.fixture
 def saved(person, hemisphere, coarse, tmp_path):
-    """A job that is saved as a user saves it."""
+    """Return a job saved like a user's."""
     document = hemisphere.Document
     api.make_all(document, hemisphere)
     document.recompute()
@@ -40,16 +41,16 @@ def test_panels_and_docks_change_nothing(person, saved):
         person.double_click(saved.getObject(name))
         person.panel(panel)
         person.idle(0.3)
-        assert not window.Modified and touched(saved) == [], name
+        assert not window.Modified and touched_objects(saved) == [], name
         person.press("Cancel")
         person.panel_closed()
-        assert not window.Modified and touched(saved) == [], name
+        assert not window.Modified and touched_objects(saved) == [], name
     for stage in (saved.Toolpath, saved.JointPath):  # each is shown in place of the other one
         person.select(stage)
         person.click("RoboticAM_Path")
         person.idle(0.3)
         assert stage.ViewObject.Visibility and stage.Visibility
-        assert not window.Modified and touched(saved) == [], stage.Label
+        assert not window.Modified and touched_objects(saved) == [], stage.Label
     saved.Toolpath.ViewObject.Visibility = True  # by the user, in the tree
     assert window.Modified
 
@@ -59,22 +60,25 @@ def test_opened_and_pasted_jobs_are_up_to_date(person, saved, tmp_path):
     App.closeDocument(saved.Name)
     again = App.openDocument(path)
     person.idle(0.4)
-    assert not person.gui.getDocument(again.Name).Modified and touched(again) == []
+    assert not person.gui.getDocument(again.Name).Modified and touched_objects(again) == []
     group = again.findObjects("App::DocumentObjectGroup")[0]
-    other = App.newDocument("Other")
-    other.copyObject(group, True)
+    other_document = App.newDocument("Other")
+    other_document.copyObject(group, True)
     again.copyObject(group, True)
     person.idle(0.3)
-    for document, count in ((other, 5), (again, 10)):
+    for document, count in ((other_document, 5), (again, 10)):
         stages = api.stages_of(document)
         assert len(stages) == count
         assert [stage.Label for stage in stages if "Touched" in stage.State] == []
         assert {stage.Status for stage in stages} == {"up to date"}
-    # FreeCAD 1.0 touches pasted shapes, for its names of faces; one recompute ends that and computes no stage anew
-    keys = [stage.Key for stage in api.stages_of(other)]
-    other.recompute()
-    assert touched(other) == [] and keys == [stage.Key for stage in api.stages_of(other)]
-    api.export(other.Program, str(tmp_path / "program"))
+    # FreeCAD 1.0 touches pasted shapes, for its names of faces; one recompute ends that without
+    # recomputing a stage
+    keys = [stage.Key for stage in api.stages_of(other_document)]
+    other_document.recompute()
+    assert touched_objects(other_document) == [] and keys == [
+        stage.Key for stage in api.stages_of(other_document)
+    ]
+    api.export(other_document.Program, str(tmp_path / "program"))
 
 
 def test_a_frozen_stage_is_not_exported(person, saved, tmp_path):
@@ -96,7 +100,8 @@ def test_a_frozen_stage_is_not_exported(person, saved, tmp_path):
 
 @pytest.mark.parametrize("frozen", ["Box", "Cut"])
 def test_a_value_set_of_what_was_frozen_when_it_was_saved(person, tmp_path, frozen):
-    """Files do not tell what is frozen: a value set in the opened file changes the part, frozen or not."""
+    """Files do not store the frozen state: a value set in the opened file changes the part, frozen
+    or not."""
     if App.Version()[:2] != ["1", "0"]:
         pytest.skip(
             "FreeCAD freezes objects since 1.0, and 1.1 saves no document with frozen objects"
@@ -112,7 +117,9 @@ def test_a_value_set_of_what_was_frozen_when_it_was_saved(person, tmp_path, froz
     document.saveAs(str(tmp_path / "frozen.FCStd"))
     box.Length = 20
     document.recompute()
-    assert cut.Shape.Volume == pytest.approx(960)  # it is frozen, or what it is made of
+    assert cut.Shape.Volume == pytest.approx(960)  # the object or its inputs are frozen
     job = App.newDocument("Job")
-    part = bring(job, PartSource(document.FileName, "Cut", settings=(("Box", "Length", "30 mm"),)))
-    assert part.Shape.Volume == pytest.approx(30 * 10 * 10 - 40)
+    feature = bring(
+        job, PartSource(document.FileName, "Cut", settings=(("Box", "Length", "30 mm"),))
+    )
+    assert feature.Shape.Volume == pytest.approx(30 * 10 * 10 - 40)

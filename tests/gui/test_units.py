@@ -20,7 +20,7 @@ window = test_fields.window  # a fixture
 SCHEMES = range(len(App.Units.listSchemas()))
 STANDARD, MKS, US, IMPERIAL, EURO, BUILDING_US, CNC, CIVIL = range(8)
 QUANTITIES = (parameters.LENGTH, parameters.ANGLE, parameters.SPEED, parameters.TIME)
-# mm, mm/s, deg, s of one of a unit, from tables and not from FreeCAD
+# mm, mm/s, deg, s in one of each unit, from tables instead of FreeCAD
 UNITS = {
     "nm": 1e-6,
     "µm": 1e-3,
@@ -51,14 +51,16 @@ UNITS = {
 
 @pytest.fixture
 def scheme():
-    """Sets a unit scheme; that of before comes back."""
-    before = App.ParamGet("User parameter:BaseApp/Preferences/Units").GetInt("UserSchema", 0)
+    """Set a unit scheme, and restore the earlier one afterwards."""
+    original_scheme = App.ParamGet("User parameter:BaseApp/Preferences/Units").GetInt(
+        "UserSchema", 0
+    )
     yield App.Units.setSchema
-    App.Units.setSchema(before)
+    App.Units.setSchema(original_scheme)
 
 
 def unit_of(text):
-    """What stands behind the number, in UNITS."""
+    """Return the unit after the number, as in UNITS."""
     text = text.rstrip()
     if re.search(r"\d[\"']$", text):
         return "in"  # feet and inches: a bare number is inches
@@ -67,7 +69,8 @@ def unit_of(text):
 
 @pytest.mark.parametrize("number", SCHEMES)
 def test_a_bare_number_is_in_the_unit_that_the_field_shows(person, scheme, number):
-    """All quantities of all stages: their fields, combined fields of a quantity or a word, and poses."""
+    """This test covers all quantities of all stages: their fields, combined fields of a quantity or
+    a word, and poses."""
     scheme(number)
     count = 0
     for section in (section for stage in STAGES for section in stage.sections):
@@ -87,10 +90,10 @@ def test_a_bare_number_is_in_the_unit_that_the_field_shows(person, scheme, numbe
                 )
                 count += 1
             if row.form in (MIXED, LENGTH_OR_POSE) and row.spec.kind in QUANTITIES:
-                shown = field.widget.text()
+                field_text = field.widget.text()
                 unit = (
-                    unit_of(shown)
-                    if shown[:1].isdigit()
+                    unit_of(field_text)
+                    if field_text[:1].isdigit()
                     else field.widget.placeholderText().split()[0]
                 )
                 field.widget.setText("2")
@@ -183,13 +186,14 @@ def test_number_and_unit_are_seen_whole(person, window, scheme, number, size):
         text = field.line.text()
         digits = re.sub(r"\D", "", text.split()[0]).lstrip("0") if " " in text else ""
         assert len(digits) <= 8, text
-        mark = field.line.findChild(person.widgets.QToolButton)  # of the expression, at its right
+        # the mark of the expression at the right of the field
+        mark = field.line.findChild(person.widgets.QToolButton)
         assert field.line.fontMetrics().boundingRect(text).width() + 4 <= mark.x(), text
         field.box.hide()
 
 
 def test_number_and_unit_are_seen_whole_under_a_style_sheet(person, window, scheme):
-    """A theme sets a least width of its own, and wider arrows."""
+    """A theme sets its own minimum width, and wider arrows."""
     scheme(IMPERIAL)
     application = person.widgets.QApplication.instance()
     sheet = (

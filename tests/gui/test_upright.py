@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Panels are scrolled up and down alone, whatever is brought into sight in them."""
+"""Panels scroll only vertically, also when a widget in them scrolls into view."""
 
 import pytest
 
 
-def around(person, panel):
-    """The one area that scrolls a panel."""
+def scroll_area(person, panel):
+    """Return the single area that scrolls a panel."""
     (area,) = [
-        one
-        for one in person.present(person.widgets.QScrollArea)
-        if one.isVisible() and one.isAncestorOf(panel)
+        area
+        for area in person.present(person.widgets.QScrollArea)
+        if area.isVisible() and area.isAncestorOf(panel)
     ]
     return area
 
 
 def narrow(person, panel):
-    """Make what scrolls a panel too small for it, both ways."""
-    area = around(person, panel)
+    """Make the scroll area of a panel too small for it, in both directions."""
+    area = scroll_area(person, panel)
     area.widget().setMinimumWidth(area.viewport().width() + 40)
     panel.setMinimumHeight(2 * area.viewport().height())
     person.until(
@@ -33,11 +33,11 @@ def sides(area):
 
 @pytest.mark.parametrize("machine", ["", "kuka-kr16-2"])
 def test_a_new_job_is_as_wide_as_what_is_seen_of_it(person, hand, hemisphere, machine):
-    """Also beside the bar that scrolls it up and down, which takes 14 pixels of the width."""
+    """This also holds next to the vertical scroll bar, which takes 14 pixels of the width."""
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    area = around(person, panel)
+    area = scroll_area(person, panel)
     if machine:
         hand.enter(panel, "Machine", machine)
     panel.setMinimumHeight(2 * area.viewport().height())
@@ -85,11 +85,12 @@ def test_a_panel_is_not_scrolled_sideways(person, hand, hemisphere, tool, name, 
 
 
 def test_the_keys_do_not_scroll_a_new_job_sideways(person, hand, hemisphere):
-    """Under a note that makes the panel too high the next field is brought into sight, and its heading stays there whole."""
+    """With a note that makes the panel too high, the next field scrolls into view, and its heading
+    stays completely visible."""
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    area = around(person, panel)
+    area = scroll_area(person, panel)
     hand.enter(panel, "Machine", "no-such-machine")
     person.press("Ok")
     assert person.field(panel, "MachineNote").isVisible()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A bend on a pipe by the mouse: picked in the 3D view and the tree, previewed, made, undone, kept in its file."""
+"""A bend on a pipe by mouse: selected in the 3D view and the tree, previewed, created, undone,
+saved in its file."""
 
 import FreeCAD as App
 import numpy as np
@@ -9,31 +10,31 @@ from freecad_am import api
 from freecad_am.gui import worker
 from freecad_am.gui.views import preview
 
-ORANGE = (245, 120, 0)  # of first layers
+ORANGE = (245, 120, 0)  # the colour of first layers
 PANEL = "RoboticAM_SurfaceFeature"
 
 
 @pytest.fixture
 def bend(person, root):
-    """A document with a bend and the pipe it stands on, seen from where both are in sight."""
+    """Return a document with a bend and its pipe, with both in view."""
     document = App.newDocument("Bend")
     pipe = document.addObject("Part::Cylinder", "Pipe")
     pipe.Radius, pipe.Height = 32, 160
     pipe.Placement = App.Placement(App.Vector(0, -80, 0), App.Rotation(App.Vector(1, 0, 0), -90))
     document.recompute()
-    parts = [
+    wall_and_pipe = [
         api.open_part(document, str(root / "resources" / "examples" / "tube-on-pipe.step")),
         pipe,
     ]
-    for part, label in zip(parts, ("Bend on it", "Old pipe"), strict=True):
-        part.Label = label
+    for obj, label in zip(wall_and_pipe, ("Bend on it", "Old pipe"), strict=True):
+        obj.Label = label
     for dock in person.present(person.widgets.QDockWidget):
         if dock.objectName() in ("Combo View", "Model", "Tree view"):
             dock.show()
     person.idle(0.4)
     person.look()
     person.gui.Selection.clearSelection()
-    return parts
+    return wall_and_pipe
 
 
 def outside(pipe):
@@ -41,8 +42,8 @@ def outside(pipe):
     return f"Face{areas.index(max(areas)) + 1}"
 
 
-def previews(person):
-    """How many previews are in the scene."""
+def preview_count(person):
+    """Return how many previews are in the scene."""
     scene = person.gui.activeDocument().activeView().getSceneGraph()
     return sum(
         str(scene.getChild(index).getName()) == preview.NAME
@@ -58,23 +59,25 @@ def previewed(person, panel):
     return person.until(text, "the preview", 60)
 
 
-def ok(person, hand, name="Ok"):
-    wanted = getattr(person.widgets.QDialogButtonBox, name)
+def press_button(person, hand, name="Ok"):
+    button_kind = getattr(person.widgets.QDialogButtonBox, name)
     boxes = [box for box in person.present(person.widgets.QDialogButtonBox) if box.isVisible()]
-    hand.click(next(box.button(wanted) for box in boxes if box.button(wanted) is not None))
+    hand.click(
+        next(box.button(button_kind) for box in boxes if box.button(button_kind) is not None)
+    )
     person.panel_closed()
 
 
 def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
-    part, pipe = bend
-    document, steps = part.Document, part.Document.UndoCount
+    wall, pipe = bend
+    document, steps = wall.Document, wall.Document.UndoCount
     console = person.window.findChild(person.widgets.QPlainTextEdit, "Python console")
-    before = console.toPlainText().count("make_surface_feature")  # of tests before
+    earlier_calls = console.toPlainText().count("make_surface_feature")  # calls of earlier tests
     assert person.screen_pixels(ORANGE) == 0
-    hand.click_face(part, "Face1")
+    hand.click_face(wall, "Face1")
     assert [
         (entry.Object, entry.SubElementNames) for entry in person.gui.Selection.getSelectionEx()
-    ] == [(part, ("Face1",))]
+    ] == [(wall, ("Face1",))]
     hand.click_tree("Old pipe", "ctrl")
     hand.click(person.button("RoboticAM_WallOnPart"))
     panel = person.panel(PANEL)
@@ -84,25 +87,25 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
     ]
     assert "closed, 97.4 mm" in previewed(person, panel)
     assert person.screen_pixels(ORANGE) > 150
-    assert (set(document.Objects), document.UndoCount, previews(person)) == (
+    assert (set(document.Objects), document.UndoCount, preview_count(person)) == (
         set(bend),
         steps,
         1,
-    )  # nothing is made yet
+    )  # nothing exists yet
     hand.enter(panel, "LayerHeight", "5 mm")
     previewed(person, panel)
     person.screenshot("panel_wall_on_part")
-    said = console.toPlainText()
-    ok(person, hand)
-    assert previews(person) == 0
+    console_text = console.toPlainText()
+    press_button(person, hand)
+    assert preview_count(person) == 0
     feature = document.getObject("Feature")
     assert (feature.LayerHeight.Value, feature.Status, document.UndoCount) == (
         5.0,
         "up to date",
         steps + 1,
     )
-    assert (feature.Source, feature.Substrate) == ((part, ["Face1"]), pipe)
-    assert person.screen_pixels(ORANGE) > 150  # what is made shows its first layer itself
+    assert (feature.Source, feature.Substrate) == ((wall, ["Face1"]), pipe)
+    assert person.screen_pixels(ORANGE) > 150  # the finished feature draws its own first layer
     person.screenshot("wall_on_part")
 
     key = feature.Key
@@ -110,14 +113,14 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
     hand.undo()
     assert set(document.Objects) == set(bend) and person.screen_pixels(ORANGE) == 0
     console = console.toPlainText()
-    assert said.count("make_surface_feature") == before
+    assert console_text.count("make_surface_feature") == earlier_calls
     hand.redo()
     assert document.Feature.Key == key and person.screen_pixels(ORANGE) > 150
     call = (
         console[console.rindex("am.make_surface_feature(") :].split("\n>>>")[0].replace("\n", " ")
     )
     again = eval(call, {"App": App, "am": api})
-    assert again.Key == key  # the recorded call makes the same
+    assert again.Key == key  # the recorded call gives the same
 
     document.removeObject(again.Name)
     document.saveAs(str(tmp_path / "bend.FCStd"))
@@ -131,17 +134,17 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
 
 
 def test_without_a_selection_the_panel_waits_for_clicks(person, hand, bend):
-    part, pipe = bend
-    document, steps = part.Document, part.Document.UndoCount
+    wall, pipe = bend
+    document, steps = wall.Document, wall.Document.UndoCount
     hand.click(person.button("RoboticAM_WallOnPart"))
     panel = person.panel(PANEL)
     assert person.field(panel, "PickSource").isChecked()
-    hand.click_face(part, "Face1")
+    hand.click_face(wall, "Face1")
     assert person.field(panel, "Source").text() == "Bend on it Face1"
     assert person.gui.Selection.getSelection() == []
-    hand.click_face(part, "Face1")  # a second click takes it back
+    hand.click_face(wall, "Face1")  # a second click removes it
     assert person.field(panel, "Source").text() == ""
-    hand.click_face(part, "Face1")
+    hand.click_face(wall, "Face1")
     hand.click_face(pipe, outside(pipe))  # can only be the substrate
     assert person.field(panel, "Substrate").text() == "Old pipe"
     previewed(person, panel)
@@ -159,19 +162,23 @@ def test_without_a_selection_the_panel_waits_for_clicks(person, hand, bend):
         and not person.field(panel, "PickSubstrate").isChecked()
     )
     previewed(person, panel)
-    ok(person, hand, "Cancel")
-    assert (set(document.Objects), document.UndoCount, previews(person)) == (set(bend), steps, 0)
+    press_button(person, hand, "Cancel")
+    assert (set(document.Objects), document.UndoCount, preview_count(person)) == (
+        set(bend),
+        steps,
+        0,
+    )
     assert person.screen_pixels(ORANGE) == 0
-    person.gui.Selection.addSelection(part)  # nobody listens any more
+    person.gui.Selection.addSelection(wall)  # the panel no longer observes the selection
     person.idle()
 
 
 def test_an_error_goes_with_its_entry_however_soon_the_next_is_typed(person, bend, monkeypatch):
     monkeypatch.setattr(
         worker, "WAIT", 1500
-    )  # entries are judged so long after the last one is typed, previews are sooner
-    part, pipe = bend
-    person.select(part)
+    )  # the delay before the panel checks an entry; previews start sooner
+    wall, pipe = bend
+    person.select(wall)
     person.gui.Selection.addSelection(pipe)
     person.click("RoboticAM_WallOnPart")
     panel = person.panel(PANEL)
@@ -192,8 +199,8 @@ def test_an_error_goes_with_its_entry_however_soon_the_next_is_typed(person, ben
 
 
 def test_errors_stand_under_the_field_they_belong_to(person, bend):
-    part, pipe = bend
-    person.select(part)
+    wall, pipe = bend
+    person.select(wall)
     person.gui.Selection.addSelection(pipe)
     person.click("RoboticAM_WallOnPart")
     panel = person.panel(PANEL)
@@ -213,9 +220,9 @@ def test_errors_stand_under_the_field_they_belong_to(person, bend):
     person.type(panel, "LayerHeight", "5 mm")
     previewed(person, panel)
     person.until(lambda: not note.isVisible(), "that the note goes", 10)
-    block = part.Document.addObject("Part::Box", "Far")
+    block = wall.Document.addObject("Part::Box", "Far")
     block.Placement.Base = App.Vector(500, 0, 0)
-    part.Document.recompute()
+    wall.Document.recompute()
     person.field(panel, "ClearSubstrate").click()
     person.field(panel, "PickSubstrate").click()
     person.gui.Selection.addSelection(block)
@@ -232,9 +239,9 @@ def test_errors_stand_under_the_field_they_belong_to(person, bend):
 
 
 def test_an_existing_wall_is_changed_with_a_preview_and_cancelled_without_a_trace(person, bend):
-    part, pipe = bend
-    feature = api.make_surface_feature(part.Document, part, ["Face1"], pipe, layer_height=5)
-    key, steps = feature.Key, part.Document.UndoCount
+    wall, pipe = bend
+    feature = api.make_surface_feature(wall.Document, wall, ["Face1"], pipe, layer_height=5)
+    key, steps = feature.Key, wall.Document.UndoCount
     person.double_click(feature)
     panel = person.panel(PANEL)
     assert person.field(panel, "Substrate").text() == "Old pipe"
@@ -242,30 +249,30 @@ def test_an_existing_wall_is_changed_with_a_preview_and_cancelled_without_a_trac
     person.type(panel, "LayerHeight", "2 mm")
     person.press("Cancel")
     person.panel_closed()
-    assert (feature.Key, part.Document.UndoCount, previews(person)) == (key, steps, 0)
+    assert (feature.Key, wall.Document.UndoCount, preview_count(person)) == (key, steps, 0)
     person.double_click(feature)
     person.type(person.panel(PANEL), "LayerHeight", "2 mm")
     person.press("Ok")
     person.panel_closed()
-    assert feature.LayerHeight.Value == 2.0 and part.Document.UndoCount == steps + 1
+    assert feature.LayerHeight.Value == 2.0 and wall.Document.UndoCount == steps + 1
     person.double_click(feature)
     previewed(person, person.panel(PANEL))
-    App.closeDocument(part.Document.Name)  # the panel outlives it
+    App.closeDocument(wall.Document.Name)  # the panel outlives its document
     person.idle(0.6)
     if person.gui.Control.activeDialog():
         person.press("Cancel")
 
 
 def test_a_panel_goes_with_its_document_whatever_is_clicked_then(person, bend):
-    part, _ = bend
-    other = App.newDocument("Other")
-    ball = other.addObject("Part::Sphere", "Ball")
-    other.recompute()
-    App.setActiveDocument(part.Document.Name)
+    wall, _ = bend
+    other_document = App.newDocument("Other")
+    ball = other_document.addObject("Part::Sphere", "Ball")
+    other_document.recompute()
+    App.setActiveDocument(wall.Document.Name)
     person.gui.Selection.clearSelection()
     person.click("RoboticAM_WallOnPart")
     person.panel(PANEL)
-    App.closeDocument(part.Document.Name)
+    App.closeDocument(wall.Document.Name)
     person.gui.Selection.addSelection(ball)  # a traceback in the report view would fail the test
     person.panel_closed()
 
@@ -297,10 +304,10 @@ def test_a_preview_that_lacks_memory_says_what_to_do(person, bend, monkeypatch):
     def too_much(*_):
         raise MemoryError("Unable to allocate 444. PiB")
 
-    whole = surface_feature.wall_on
+    wall_on = surface_feature.wall_on
     monkeypatch.setattr(surface_feature, "wall_on", too_much)
-    part, pipe = bend
-    person.select(part, "Face1")
+    wall, pipe = bend
+    person.select(wall, "Face1")
     person.gui.Selection.addSelection(pipe)
     person.click("RoboticAM_WallOnPart")
     panel = person.panel(PANEL)
@@ -311,7 +318,7 @@ def test_a_preview_that_lacks_memory_says_what_to_do(person, bend, monkeypatch):
         10,
     )
     assert "MemoryError" not in note.text()
-    monkeypatch.setattr(surface_feature, "wall_on", whole)
+    monkeypatch.setattr(surface_feature, "wall_on", wall_on)
     person.type(panel, "LayerHeight", "4 mm")
     previewed(person, panel)
     person.press("Cancel")
@@ -321,11 +328,11 @@ def test_a_preview_that_lacks_memory_says_what_to_do(person, bend, monkeypatch):
 def test_a_scan_is_a_substrate_and_a_mesh_alone_a_wall(person, bend):
     import Mesh
 
-    part, _ = bend
-    scan = part.Document.addObject("Mesh::Feature", "Scan")
+    solid_wall, _ = bend
+    scan = solid_wall.Document.addObject("Mesh::Feature", "Scan")
     scan.Mesh = Mesh.createBox(10.0, 10.0, 10.0)
     person.select(scan)
-    person.gui.Selection.addSelection(part)
+    person.gui.Selection.addSelection(solid_wall)
     person.click("RoboticAM_WallOnPart")
     panel = person.panel(PANEL)
     assert [person.field(panel, name).text() for name in ("Source", "Substrate")] == [
@@ -339,7 +346,7 @@ def test_a_scan_is_a_substrate_and_a_mesh_alone_a_wall(person, bend):
     assert person.field(panel, "Source").text() == "Scan"
     person.press("Cancel")
     person.panel_closed()
-    tube = part.Document.addObject("Mesh::Feature", "Vase")
+    tube = solid_wall.Document.addObject("Mesh::Feature", "Vase")
     tube.Mesh = Mesh.createCylinder(10.0, 30.0, 0, 5.0, 30)
     person.select(tube)
     person.click("RoboticAM_WallOnPart")
@@ -348,7 +355,7 @@ def test_a_scan_is_a_substrate_and_a_mesh_alone_a_wall(person, bend):
     previewed(person, panel)
     person.press("Ok")
     person.panel_closed()
-    wall = part.Document.ActiveObject
+    wall = solid_wall.Document.ActiveObject
     assert wall.WallKind == "mesh" and wall.Source[0] == tube
 
 
@@ -387,7 +394,7 @@ def test_a_body_in_an_assembly_carries_a_linked_wall_beside_fixtures(person):
         person.gui.Selection.addSelection(clamp)
         person.idle()
     assert person.field(panel, "Fixtures").text() == "Clamp, Other"
-    person.gui.Selection.addSelection(clamps[0])  # takes it back
+    person.gui.Selection.addSelection(clamps[0])  # removes it
     person.idle()
     previewed(person, panel)
     person.press("Ok")
@@ -398,15 +405,15 @@ def test_a_body_in_an_assembly_carries_a_linked_wall_beside_fixtures(person):
         body,
         [clamps[1]],
     )
-    first = api.result(feature).first
-    on_pipe = np.hypot(first[:, 1], first[:, 2])
+    first_curves = api.result(feature).first
+    on_pipe = np.hypot(first_curves[:, 1], first_curves[:, 2])
     assert (
-        np.abs(np.hypot(first[:, 0] - 50, first[:, 1]) - 12).max() < 1e-6
+        np.abs(np.hypot(first_curves[:, 0] - 50, first_curves[:, 1]) - 12).max() < 1e-6
         and np.abs(on_pipe - 30).max() < 1e-6
     )
-    said = len(person.console())
+    console_length = len(person.console())
     document.recompute()
-    assert "scope" not in person.console()[said:]
+    assert "scope" not in person.console()[console_length:]
 
 
 def test_a_wall_that_starts_at_an_edge_needs_no_substrate(person):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What's This, by the mouse: tools and fields lead to their page, and nobody asks for an addon."""
+"""What's This by mouse: tools and fields lead to their page, without a message about an addon."""
 
 import pytest
 
@@ -9,13 +9,13 @@ from freecad_am.gui.widgets import upright
 
 @pytest.fixture
 def shown(person):
-    """What the window for help shows: the first line of its page, and the note above."""
+    """Return the first line of the page in the window for help, and the note above it."""
 
     def look():
         windows = [
-            one
-            for one in person.present(person.widgets.QDialog, whats_this.NAME)
-            if one.isVisible()
+            help_window
+            for help_window in person.present(person.widgets.QDialog, whats_this.NAME)
+            if help_window.isVisible()
         ]
         if not windows:
             return None
@@ -25,8 +25,8 @@ def shown(person):
         ], note.text() if note.isVisible() else ""
 
     yield look
-    for one in whats_this._windows:
-        one.window.hide()
+    for help_window in whats_this._windows:
+        help_window.window.hide()
 
 
 def ask(person, hand, widget):
@@ -45,14 +45,12 @@ def test_a_tool_leads_to_its_page(person, hand, hemisphere, shown):
     for command, title in (
         ("Cell", "Cell"),
         ("SpinMap", "Free Rotation Map"),
-    ):  # the second is greyed
+    ):  # the second is disabled
         ask(person, hand, person.button(f"RoboticAM_{command}"))
         person.until(lambda: shown() == (title, ""), f"the page of {command}", 5)  # noqa: B023
         assert not person.widgets.QWhatsThis.inWhatsThisMode()
         person.screenshot("whats_this_tool")
-        whats_this._windows[
-            -1
-        ].window.close()  # it lies over the toolbar where there is no window manager
+        whats_this._windows[-1].window.close()  # without a window manager it covers the toolbar
 
 
 def test_a_field_leads_to_the_page_of_its_panel_and_is_told(person, hand, hemisphere, shown):
@@ -90,9 +88,9 @@ def test_what_is_not_ours_is_left_to_freecad(person):
 
 
 def test_what_pyside_mistakes_for_an_event_is_let_pass(person):
-    """It hands over, now and then, what lay where the event is before."""
-    for one in (whats_this._watches[0], upright._guard):
-        assert one.eventFilter(person.window, person.window) is False
+    """PySide sometimes passes an earlier object at the event's address."""
+    for event_filter in (whats_this._watches[0], upright._guard):
+        assert event_filter.eventFilter(person.window, person.window) is False
 
 
 def test_tables_of_the_help_begin_with_what_they_say(person, shown):
@@ -102,9 +100,9 @@ def test_tables_of_the_help_begin_with_what_they_say(person, shown):
         person.idle(0.1)
         document = whats_this._windows[-1].text.document()
         tables = [
-            one
-            for one in document.rootFrame().childFrames()
-            if isinstance(one, person.widgets.QTextTable)
+            frame
+            for frame in document.rootFrame().childFrames()
+            if isinstance(frame, person.widgets.QTextTable)
         ]
         assert tables, page
         for table in tables:

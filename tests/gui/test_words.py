@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Panels show words and full names where documents hold keys, and no field without a meaning for the machine."""
+"""Panels show words and full names for the keys in documents, and no field that the machine does
+not use."""
 
 import math
 
@@ -26,7 +27,7 @@ OF_TABLES = ("Lock", "LockAt", "MaxResidual")
 
 @pytest.fixture
 def cells(hemisphere):
-    """A toolpath with a robot's cell, and a cell of a five-axis machine."""
+    """Return a toolpath with a robot's cell, and a cell of a five-axis machine."""
     document = hemisphere.Document
     robot = api.make_cell(document)
     toolpath = api.make_toolpath(
@@ -35,8 +36,8 @@ def cells(hemisphere):
     return toolpath, robot, api.make_cell(document, machine="table-xyzac", setup="rotary-table")
 
 
-def shown(person, panel, names):
-    """Of some fields those that are part of the panel, folded away or not."""
+def shown_fields(person, panel, names):
+    """Return those of some fields that belong to the panel, in open or closed groups."""
     return {name for name in names if not person.field(panel, name).parentWidget().isHidden()}
 
 
@@ -50,7 +51,7 @@ def test_machines_have_their_full_names(person, hemisphere):
     person.choose(panel, "Machine", "KUKA KR 16-2")
     person.press("Ok")
     person.panel_closed()
-    assert hemisphere.Document.Cell.Machine == "kuka-kr16-2"  # as job files and macros say it
+    assert hemisphere.Document.Cell.Machine == "kuka-kr16-2"  # the name in job files and macros
     person.double_click(hemisphere.Document.Cell)
     panel = person.panel("RoboticAM_Cell")
     assert person.field(panel, "Machine").currentText() == "KUKA KR 16-2"
@@ -60,7 +61,8 @@ def test_machines_have_their_full_names(person, hemisphere):
 
 
 def test_fields_away_from_the_heading_of_their_group_name_it(person, cells):
-    """'Ramp' stood twice among what is advanced, and 'Lead', 'First', 'Zero' for nobody knows what."""
+    """Such a field needs the name of its group: two advanced fields were called 'Ramp', and 'Lead',
+    'First' and 'Zero' did not say of what."""
     person.double_click(cells[0])
     panel = person.panel("RoboticAM_Toolpath")
     labels = [label.text() for label in panel.findChildren(QtGui.QLabel)]
@@ -97,7 +99,7 @@ def test_any_part_of_a_machine_s_name_offers_it(person, hand, hemisphere):
     machine = person.field(person.panel("RoboticAM_NewJob"), "Machine")
     assert (
         machine.itemText(machine.currentIndex()) == machine.currentText()
-    )  # the list opens at the one that is chosen
+    )  # the list opens at the chosen entry
     hand.click(machine.lineEdit())
     hand.do("key", "ctrl+a")
     hand.do("type", "--delay", "20", "4600")
@@ -117,42 +119,45 @@ def test_a_joint_path_has_the_fields_of_its_machine(person, cells):
     person.select(toolpath)
     person.click("RoboticAM_JointPath")
     panel = person.panel("RoboticAM_JointPath")
-    assert shown(person, panel, (*OF_ROBOTS, *OF_TABLES)) == set(OF_ROBOTS)
+    assert shown_fields(person, panel, (*OF_ROBOTS, *OF_TABLES)) == set(OF_ROBOTS)
     method = person.field(panel, "Method")
     assert [method.itemText(row) for row in range(3)] == [
         "layer by layer",
         "point by point",
         "constant",
     ]
-    assert shown(person, panel, ("Degree", "Rz")) == {"Degree"}
+    assert shown_fields(person, panel, ("Degree", "Rz")) == {"Degree"}
     person.choose(panel, "Method", "constant")
-    assert shown(person, panel, ("Degree", "Rz")) == {"Rz"}
+    assert shown_fields(person, panel, ("Degree", "Rz")) == {"Rz"}
     person.choose(panel, "InputCell", table.Label)
-    assert shown(person, panel, OF_TABLES) == set(OF_TABLES)
-    assert shown(person, panel, OF_ROBOTS) == {
+    assert shown_fields(person, panel, OF_TABLES) == set(OF_TABLES)
+    assert shown_fields(person, panel, OF_ROBOTS) == {
         "Method"
-    }  # it holds another one than at first: it stays to be seen
+    }  # its value differs from the default, so it stays visible
     person.press("Cancel")
     person.panel_closed()
 
 
 def test_a_cell_has_the_fields_of_its_set_up(person, cells):
-    """A tool on the robot has a pose on it, and axes beside it; a platform has one where robot or positioner carries it."""
+    """A tool on the robot has a pose on it and external axes; a platform on the robot or positioner
+    has its own pose."""
     _, robot, table = cells
     names = ("NozzleTool", "External", "Platform")
     person.double_click(robot)
     panel = person.panel("RoboticAM_Cell")
-    assert shown(person, panel, names) == {"Platform"}
+    assert shown_fields(person, panel, names) == {"Platform"}
     person.choose(panel, "Setup", "tool on robot")
-    assert shown(person, panel, names) == {"NozzleTool", "External"}
+    assert shown_fields(person, panel, names) == {"NozzleTool", "External"}
     person.type(panel, "External", "motoman-motopos-d500 at 1500 0 0 0 0 0 carries part")
     person.until(
-        lambda: shown(person, panel, names) == set(names), "the platform of the positioner", 5
+        lambda: shown_fields(person, panel, names) == set(names),
+        "the platform of the positioner",
+        5,
     )
     person.press("Cancel")
     person.panel_closed()
     person.double_click(table)
-    assert shown(person, person.panel("RoboticAM_Cell"), names) == {"Platform"}
+    assert shown_fields(person, person.panel("RoboticAM_Cell"), names) == {"Platform"}
     person.press("Cancel")
     person.panel_closed()
 
@@ -173,12 +178,12 @@ def test_keys_are_words_and_short_lengths_show_the_unit_that_is_typed(person, he
     tolerance = next(row for row in rows(SurfaceParameters) if row.key == "tolerance")
     field = fields.make(tolerance, tolerance.default)
     assert field.widget.text() == "100 nm" and field.value == 1e-4 and not field.changed
-    field.widget.lineEdit().setText("250")  # without a unit it is in the one that was shown
+    field.widget.lineEdit().setText("250")  # without a unit, the number has the unit shown before
     assert math.isclose(field.value, 2.5e-4, rel_tol=1e-12) and field.changed
 
 
 def test_the_first_entry_of_a_program_s_menu_reads_it(person, hemisphere, coarse):
-    """FreeCAD draws the first one bold, as what a double click does."""
+    """FreeCAD prints the first entry bold, because a double click does the same."""
     api.make_all(hemisphere.Document, hemisphere)
     program = hemisphere.Document.Program
     menu = person.widgets.QMenu()
@@ -194,17 +199,17 @@ def test_a_machine_without_a_post_is_told_as_it_is_chosen(person, hemisphere):
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
-    told = person.field(panel, "no_post")
-    assert not told.isVisible()
+    post_note = person.field(panel, "no_post")
+    assert not post_note.isVisible()
     person.choose(panel, "Machine", "kuka-kr16-2")
     setup = person.field(panel, "Setup")
     assert (
-        setup.currentData() == "tool-on-robot" and not told.isVisible()
-    )  # for which its programs are
+        setup.currentData() == "tool-on-robot" and not post_note.isVisible()
+    )  # the machine of its programs
     person.choose(panel, "Setup", "part-on-robot")
-    assert told.isVisible() and "no program is written" in told.text()
+    assert post_note.isVisible() and "no program is written" in post_note.text()
     person.choose(panel, "Machine", "table-xyzac")
-    assert not told.isVisible()
+    assert not post_note.isVisible()
     person.press("Cancel")
     person.panel_closed()
 

@@ -124,7 +124,7 @@ def cuts(points, build, strategy):
     high = length(strategy.get("layer_height", 1.0)) if strategy.get("kind") == "solid" else 0.0
     high = (
         high if math.isfinite(high) else 0.0
-    )  # it also judges points far off the part, with a growing tolerance
+    )  # an unreadable length is infinite as a tolerance, but a shift must be finite
     return [points + share * high * build for share in ((0.0, 0.5, 1.0) if high else (0.0,))]
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tutorial 4, step by step: a bracket in plane layers; what leans out of it, what is deposited of it; on a tilting table."""
+"""Tutorial 4, step by step: a bracket in plane layers, its overhangs and its deposit, on a tilting
+table."""
 
 import pytest
 
@@ -9,18 +10,21 @@ PAGE = "bracket"
 @pytest.mark.long
 def test_the_bracket(person, hand, lesson):
     lesson.step("1. Open the bracket")
-    document, part = lesson.parts("bracket.step")
+    document, bracket = lesson.parts("bracket.step")
     lesson.picture("bracket-part")
 
     lesson.step("2. See the overhangs")
-    hand.click_face(part, "Face1")
+    hand.click_face(bracket, "Face1")
     lesson.tool("Solid")
     panel = person.panel("RoboticAM_SolidFeature")
-    slider, told = person.field(panel, "OverhangAngle"), person.field(panel, "OverhangArea")
-    person.until(lambda: "45°: " in told.text(), "the area that leans out", 60)
+    slider, overhang_text = (
+        person.field(panel, "OverhangAngle"),
+        person.field(panel, "OverhangArea"),
+    )
+    person.until(lambda: "45°: " in overhang_text.text(), "the area that leans out", 60)
     hand.click(slider)
     hand.do("key", *["Left"] * 25)
-    person.until(lambda: "20°: " in told.text(), "another angle", 10)
+    person.until(lambda: "20°: " in overhang_text.text(), "another angle", 10)
     lesson.from_below()
     lesson.picture("bracket-overhang")
     lesson.see_all()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tutorial 6, step by step: the bent top of a die gets two layers along its normals, on a table that tilts and turns."""
+"""Tutorial 6, step by step: the curved top of a die gets two layers along its normals, on a table
+that tilts and turns."""
 
 import pytest
 
@@ -10,15 +11,15 @@ TOP = "Face3"
 @pytest.mark.long
 def test_the_die(person, hand, lesson):
     lesson.step("1. Open the die")
-    document, part = lesson.parts("die.step")
+    document, die = lesson.parts("die.step")
     lesson.picture("die-part")
 
     lesson.step("2. Choose the face")
-    hand.click_face(part, TOP)
+    hand.click_face(die, TOP)
     lesson.tool("Cladding")
     panel = person.panel("RoboticAM_CladdingFeature")
-    told = person.field(panel, "preview")
-    person.until(lambda: "1 face, 84" in told.text(), "the face and its area", 60)
+    preview_text = person.field(panel, "preview")
+    person.until(lambda: "1 face, 84" in preview_text.text(), "the face and its area", 60)
     lesson.hand.enter(panel, "Layers", "2")
     lesson.hand.enter(panel, "LayerHeight", "2 mm")
     lesson.hand.enter(panel, "ChordError", "0.1 mm")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tutorial 1, step by step: a part of revolution from a STEP file to a program, with the rotation about the tool by hand."""
+"""Tutorial 1, step by step: a part of revolution from a STEP file to a program, with the tool
+rotation set by hand."""
 
 from freecad_am import api
 from freecad_am.gui.redundancy_map import dock as docks
@@ -9,11 +10,11 @@ PAGE = "hemisphere"
 
 def test_the_hemisphere(person, hand, lesson, tmp_path):
     lesson.step("1. Open the part")
-    document, part = lesson.parts("hemisphere.step")
+    document, hemisphere = lesson.parts("hemisphere.step")
     lesson.picture("hemisphere-part")
 
     lesson.step("2. Make the job")
-    hand.click_face(part, "Face1")
+    hand.click_face(hemisphere, "Face1")
     lesson.tool("NewJob")
     panel = person.panel("RoboticAM_NewJob")
     assert "share one axis of revolution" in panel_text(person, panel)
@@ -62,14 +63,18 @@ def test_the_hemisphere(person, hand, lesson, tmp_path):
     lesson.step("6. Turn the part about the nozzle")
     lesson.tool("SpinMap")
     dock = person.panel("RoboticAM_SpinMap")
-    one = docks._open[0]
-    person.until(lambda: one.canvas.painted is not None, "the map", 30)
+    map_dock = docks._open[0]
+    person.until(lambda: map_dock.canvas.painted is not None, "the map", 30)
     assert person.field(dock, "together").isChecked()
-    planned = one.board.draft_values(one.draft)
+    planned = map_dock.board.draft_values(map_dock.draft)
     column = len(planned) // 2
-    start, end = (place(one.canvas, column, planned[column] + turn) for turn in (0.0, -0.5))
+    start, end = (
+        screen_position(map_dock.canvas, column, planned[column] + turn) for turn in (0.0, -0.5)
+    )
     lesson.drag(start, end)
-    assert abs(one.board.draft_values(one.draft) - planned).min() > 0.2  # all of it has moved
+    assert (
+        abs(map_dock.board.draft_values(map_dock.draft) - planned).min() > 0.2
+    )  # the whole curve has moved
     assert person.field(dock, "use").isEnabled()
     lesson.picture("hemisphere-map")
     hand.click(person.field(dock, "use"))
@@ -93,18 +98,18 @@ def test_the_hemisphere(person, hand, lesson, tmp_path):
     lesson.finish()
 
 
-def place(canvas, column, value):
-    """Where a column of the map and a rotation are on the screen."""
+def screen_position(canvas, column, value):
+    """Return the position of a column of the map and a rotation on the screen."""
     from PySide import QtCore
 
-    there = canvas.mapToGlobal(
+    position = canvas.mapToGlobal(
         QtCore.QPoint(round(float(canvas.x_of(column))), round(float(canvas.y_of(value))))
     )
-    return there.x(), there.y()
+    return position.x(), position.y()
 
 
 def panel_text(person, panel):
-    """All that a panel says."""
+    """Return all texts of a panel."""
     return "\n".join(
         label.text() for label in panel.findChildren(person.widgets.QLabel) if label.isVisible()
     )

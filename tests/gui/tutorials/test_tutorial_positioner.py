@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tutorial 7, step by step: a dome on a table that tilts and turns, under a torch that a robot carries, to a KRL program."""
+"""Tutorial 7, step by step: a dome on a table that tilts and turns, under a torch on a robot, to a
+KRL program."""
 
 import json
 import math
@@ -21,10 +22,10 @@ TORCH, LEANS = 300.0, 10.0  # mm from the flange to the tip; deg
 @pytest.mark.long
 def test_the_dome_on_a_positioner(person, hand, lesson):
     lesson.step("1. Open the part")
-    document, part = lesson.parts("hemisphere.step")
+    document, dome = lesson.parts("hemisphere.step")
 
     lesson.step("2. Say how far the torch may lean")
-    hand.click_face(part, "Face1")
+    hand.click_face(dome, "Face1")
     lesson.tool("Feature")
     panel = person.panel("RoboticAM_RevolutionFeature")
     lesson.hand.enter(panel, "LayerHeight", "10 mm")
@@ -97,27 +98,31 @@ def test_the_dome_on_a_positioner(person, hand, lesson):
 
 
 def _map(person, hand, lesson):
-    """Both axes of the table at a point that is clicked: the plan is where the lines cross."""
+    """Check the map of both table axes at a clicked point: the plan is where the lines cross."""
     lesson.tool("SpinMap")
     dock = person.panel("RoboticAM_SpinMap")
-    one = docks._open[0]
-    person.until(lambda: one.canvas.painted is not None, "the map", 60)
-    there = one.canvas.mapToGlobal(one.canvas.area().center().toPoint())
-    hand.at((there.x(), there.y()))
-    person.until(lambda: one.clicked, "the click", 10)
-    ((bead, point),) = one.clicked.items()
+    map_dock = docks._open[0]
+    person.until(lambda: map_dock.canvas.painted is not None, "the map", 60)
+    position = map_dock.canvas.mapToGlobal(map_dock.canvas.area().center().toPoint())
+    hand.at((position.x(), position.y()))
+    person.until(lambda: map_dock.clicked, "the click", 10)
+    ((bead, point),) = map_dock.clicked.items()
     lesson.choose(dock, "across", "e2")
-    person.until(lambda: one.board.across == 1 and one.canvas.painted is not None, "e2 across", 60)
+    person.until(
+        lambda: map_dock.board.across == 1 and map_dock.canvas.painted is not None, "e2 across", 60
+    )
     lesson.choose(dock, "axis", "e1")
-    person.until(lambda: one.board.up == 0 and one.canvas.painted is not None, "e1 upwards", 60)
-    planned = one.source.planned.beads[bead].joints[point, 6:]
-    assert abs(one.board.offsets[one.board.marks[1]] - planned[1]) < 2.0 * math.pi / 100.0
-    assert one.board.pair.values[0] <= planned[0] <= one.board.pair.values[-1]
+    person.until(
+        lambda: map_dock.board.up == 0 and map_dock.canvas.painted is not None, "e1 upwards", 60
+    )
+    planned = map_dock.source.planned.beads[bead].joints[point, 6:]
+    assert abs(map_dock.board.offsets[map_dock.board.marks[1]] - planned[1]) < 2.0 * math.pi / 100.0
+    assert map_dock.board.pair.values[0] <= planned[0] <= map_dock.board.pair.values[-1]
 
 
 def _upright(text):
-    """What the program says, by PyKDL on the table's own file: at each point the wall leans from where a dome has it, and
-    the table brings the torch nearly upright."""
+    """Check the program with PyKDL on the table's own file: at each point the wall has the lean of
+    a dome, and the table brings the torch nearly upright."""
     words = ",".join(f"{name} ([-.\\d]+)" for name in ("X", "Y", "Z", "A", "B", "C", "E1", "E2"))
     rows = np.array(re.findall(rf"LIN \{{{words}\}}", text), dtype=float)
     assert len(rows) > 200 and np.ptp(rows[:, 7]) > 300.0
@@ -142,4 +147,4 @@ def _upright(text):
         math.degrees(math.acos(-PyKDL.Rotation.RPY(c, b, a).UnitZ()[2]))
         for c, b, a in np.radians(rows[:, 5:2:-1])
     ]
-    assert max(in_part) > 40.0  # in the first file: it is the table that turns
+    assert max(in_part) > 40.0  # in the first file, so the table does turn

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tutorial 3, step by step: three blades on a cone, on a table that tilts and turns, to a program for an 840D."""
+"""Tutorial 3, step by step: three blades on a cone, on a table that tilts and turns, to a program
+for an 840D."""
 
 import re
 
@@ -75,7 +76,8 @@ def test_the_rotor(person, hand, lesson, tmp_path):
     assert document.Program.Status == "up to date"
     lesson.double_click("Program")
     window = person.panel("RoboticAM_ProgramText")
-    assert "ROTOR01" in person.field(window, "text").toPlainText()  # the frame calls the layers
+    # the main program calls the layers
+    assert "ROTOR01" in person.field(window, "text").toPlainText()
     lesson.choose(window, "file", "ROTOR01.SPF")
     assert re.search(r"^N\d+ G1 .*A=?.*C", person.field(window, "text").toPlainText(), re.MULTILINE)
     lesson.picture("rotor-program")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tutorial 2, step by step: a bend on a pipe, stage by stage, with layers at an equal distance everywhere."""
+"""Tutorial 2, step by step: a bend on a pipe, stage by stage, with equal layer distances
+everywhere."""
 
 import pytest
 
@@ -78,12 +79,12 @@ def test_the_tube(person, hand, lesson, tmp_path):
     dock = person.panel("RoboticAM_Plots")
     if person.field(
         dock, "picture"
-    ).currentIndex():  # left there by a test before: a session begins with the angles
+    ).currentIndex():  # an earlier test left it there: a session starts with the angles
         lesson.choose(dock, "picture", person.field(dock, "picture").itemText(0))
-    person.until(lambda: drawn(plots.only.dock) > 1, "the angles", 20)
+    person.until(lambda: chart_count(plots.only.dock) > 1, "the angles", 20)
     lesson.choose(dock, "picture", "Joint speeds in %")
     person.until(
-        lambda: drawn(plots.only.dock) == 1, "all speeds in one picture", 20
+        lambda: chart_count(plots.only.dock) == 1, "all speeds in one picture", 20
     )  # angles have one for each axis
     lesson.picture("tube-plots")
     lesson.close("RoboticAM_Plots")
@@ -108,13 +109,13 @@ def test_the_tube(person, hand, lesson, tmp_path):
     lesson.finish()
 
 
-def drawn(dock):
-    """How many charts the canvas of the plots shows, 0 while they are being made."""
+def chart_count(dock):
+    """Return how many charts the canvas of the plots shows, 0 while they are drawn."""
     return len(dock.canvas.view.places) if dock.building.worker is None and dock.canvas.ready else 0
 
 
 def first_layer(person, panel):
-    """Until the preview tells of the first layer."""
+    """Wait until the preview describes the first layer."""
     note = person.field(panel, "preview")
     person.until(
         lambda: note.isVisible() and note.text().startswith("First layer: "), "the preview", 60

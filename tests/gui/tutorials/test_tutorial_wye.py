@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tutorial 5, step by step: a Y in curved layers that need no support, held by a robot under a nozzle that stands still."""
+"""Tutorial 5, step by step: a Y in curved layers without supports, on a robot under a fixed
+nozzle."""
 
 import pytest
 
@@ -9,19 +10,24 @@ PAGE = "wye"
 @pytest.mark.long
 def test_the_wye(person, hand, lesson):
     lesson.step("1. Open the Y")
-    document, part = lesson.parts("wye.step")
+    document, wye = lesson.parts("wye.step")
     lesson.picture("wye-part")
 
     lesson.step("2. See the overhangs")
-    hand.click_face(part, "Face1")
+    hand.click_face(wye, "Face1")
     lesson.tool("Solid")
     panel = person.panel("RoboticAM_SolidFeature")
-    slider, told = person.field(panel, "OverhangAngle"), person.field(panel, "OverhangArea")
-    person.until(lambda: "45°: " in told.text(), "the area that leans out", 60)
+    slider, overhang_text = (
+        person.field(panel, "OverhangAngle"),
+        person.field(panel, "OverhangArea"),
+    )
+    person.until(lambda: "45°: " in overhang_text.text(), "the area that leans out", 60)
     hand.click(slider)
     hand.do("key", *["Left"] * 15)
     person.until(
-        lambda: "30°: " in told.text() and not told.text().endswith("(0 %)"), "the arms", 10
+        lambda: "30°: " in overhang_text.text() and not overhang_text.text().endswith("(0 %)"),
+        "the arms",
+        10,
     )
     lesson.from_below()
     lesson.picture("wye-overhang")
