@@ -223,7 +223,7 @@ def select_separable(
     link_poses: Callable[[Array], list[Array]],
     pairs: Sequence[tuple[int, int]],
 ) -> list[tuple[int, int]]:
-    """Select the link pairs that are nearer than the clearance in at most half of all positions."""
+    """Select the link pairs that are nearer than the clearance in at most half of the positions."""
     limits, axes = robot.limits(machine.MAKER), len(robot.axes)
     joints = np.random.default_rng(15).uniform(
         np.maximum(limits.lower, -np.pi), np.minimum(limits.upper, np.pi), (POSITIONS, axes)

@@ -42,7 +42,7 @@ Array = np.ndarray
 
 
 def run() -> list[Row]:
-    """Return all comparisons of this file."""
+    """Return all comparisons."""
     return [*compare_with_fcl(), *compare_bead_lengths()]
 
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Run a measuring script in FreeCAD's window under Xvfb; helpers with which such a script starts
-and ends. FRAMES_TO tells the script where to write its results, FRAMES_OF which checkout to
-measure."""
+and ends. FRAMES_TO names the file for its results, FRAMES_OF the checkout to measure."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ OTHER_WRISTS = {
 
 
 def run() -> list[Row]:
-    """Return all comparisons of this file."""
+    """Return all comparisons."""
     arm = machine.load(MACHINE)
     rng = np.random.default_rng(1)
     # the well-conditioned middle of the workspace, where every solver has a solution

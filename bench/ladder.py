@@ -158,7 +158,7 @@ def time_certificate() -> float:
 
 
 def _ladder(toolpath: Toolpath, task: Task, rods: Any) -> float | None:
-    """Cost of the cheapest ways up the ladders of all beads (rad); None without python-fcl."""
+    """Cost of the cheapest ways up the ladders of the beads (rad); None without python-fcl."""
     try:
         import fcl
     except ImportError:

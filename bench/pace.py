@@ -49,7 +49,7 @@ class Watch:
 
     @property
     def pace(self) -> float:
-        """Return the median pace so far (ms)."""
+        """Return the median pace up to now (ms)."""
         return median(self._seen)
 
     def quiet(self, seconds: float) -> float:

@@ -15,5 +15,5 @@ def is_smallest() -> bool:
 
 
 def choose(full: Value, smallest: Value) -> Value:
-    """Return the value for the size of this run."""
+    """Return the value for the size in use."""
     return smallest if is_smallest() else full

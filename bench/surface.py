@@ -33,7 +33,7 @@ REFINEMENT = 4
 
 
 def run() -> list[Row]:
-    """Return all comparisons of this file."""
+    """Return all comparisons."""
     torus = Torus(60.0, 15.0)
     base_layer = intersect_implicit(
         torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, POINTS)
