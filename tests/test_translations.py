@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every text of the window can be translated, the French one is complete and current, and messages are told by theirs."""
+"""Every text of the window is translatable, the French translation is complete and current, and
+messages are translated by their templates."""
 
 import ast
 import gc
@@ -44,7 +45,7 @@ NAMED = re.compile(
 
 @pytest.fixture(scope="module")
 def collected():
-    gc.disable()  # it would look through the million nodes of the code again and again
+    gc.disable()  # the collector would repeatedly scan the million nodes of the code
     try:
         return collect.Collected()
     finally:
@@ -56,7 +57,7 @@ def french():
     return ts_file.contexts(FOLDER / "RoboticAM_fr.ts")
 
 
-# ---- what is shipped
+# ---- shipped translations
 
 
 def test_all_texts_are_collected(collected, french):
@@ -85,29 +86,37 @@ def test_all_texts_are_collected(collected, french):
     ],
 )
 def test_texts_of_records_are_collected_from_the_fields_that_are_shown(made, shown):
-    """The collector knows them by position: a field put before them would lose their French."""
+    """The collector identifies them by position: a new field before them would lose their
+    French."""
     names = list(inspect.signature(made).parameters)
     assert {names[position] for position in MAKERS[made.__name__]} == shown
 
 
 def test_texts_that_are_whole_where_they_are_made_are_there(french):
-    """Of one word too, such as `a plane` in what is told of a face."""
-    made = {
+    """The table also has single words, such as `a plane` in a message about a face."""
+    complete_texts = {
         text: str(path.name)
         for path in (ROOT / "freecad_am").rglob("*.py")
         for text in re.findall(
             r'\bText\("([^"{}]*[a-z]{2}[^"{}]*)"\)', path.read_text(encoding="utf-8")
         )
     }
-    assert "a plane" in made and len(made) > 10
-    assert {text: where for text, where in made.items() if text not in french["RoboticAM"]} == {}
+    assert "a plane" in complete_texts and len(complete_texts) > 10
+    assert {
+        text: where for text, where in complete_texts.items() if text not in french["RoboticAM"]
+    } == {}
 
 
 def test_french_is_complete(french):
-    missing = [source for texts in french.values() for source, told in texts.items() if not told]
+    missing = [
+        source
+        for texts in french.values()
+        for source, translation in texts.items()
+        if not translation
+    ]
     assert not missing, f"{UPDATE}: {missing}"
     assert "unfinished" not in (FOLDER / "RoboticAM_fr.ts").read_text(encoding="utf-8")
-    same = {source for source, told in french["RoboticAM"].items() if source == told}
+    same = {source for source, translation in french["RoboticAM"].items() if source == translation}
     words = {
         source
         for source in same
@@ -118,23 +127,23 @@ def test_french_is_complete(french):
 
 def test_places_and_accelerators_are_kept(french):
     for texts in french.values():
-        for source, told in texts.items():
-            assert ts_file.fields(source) == ts_file.fields(told), (source, told)
-            assert source.count("&") == told.count("&"), (source, told)
+        for source, translation in texts.items():
+            assert ts_file.fields(source) == ts_file.fields(translation), (source, translation)
+            assert source.count("&") == translation.count("&"), (source, translation)
             assert (
-                source[:1].isspace() == told[:1].isspace()
-                and source[-1:].isspace() == told[-1:].isspace()
+                source[:1].isspace() == translation[:1].isspace()
+                and source[-1:].isspace() == translation[-1:].isspace()
             ), source
 
 
 def test_french_is_set_as_french_is(french):
     for texts in french.values():
-        for told in texts.values():
+        for translation in texts.values():
             words = re.sub(
-                r"`[^`]*`|\b[a-z_]+(\.[a-z_]+)*: (?=[\[{a-z])", "", told
+                r"`[^`]*`|\b[a-z_]+(\.[a-z_]+)*: (?=[\[{a-z])", "", translation
             )  # settings, such as wall: outer
             assert not re.search(rf"[^{NO_BREAK}][;:?!»](?=\s|$)", words), (
-                f"no space that does not break: {told}"
+                f"no space that does not break: {translation}"
             )
 
 
@@ -146,8 +155,8 @@ def test_what_lrelease_made_is_current(french):
     translator = core.QTranslator()
     assert translator.load(str(FOLDER / "RoboticAM_fr.qm"))
     for context, texts in french.items():
-        for source, told in texts.items():
-            assert translator.translate(context, source) == told, f"{source}; {UPDATE}"
+        for source, translation in texts.items():
+            assert translator.translate(context, source) == translation, f"{source}; {UPDATE}"
 
 
 # ---- no text of the window is left out
@@ -220,19 +229,21 @@ NAMES = {
     "palette",
     "text",
 }
-# names and icons of commands, and names of objects, which nobody reads
+# names and icons of commands, and names of objects, which users never read
 UNREAD = {"Tool": {0}, "_tell": set(), "_show_note": set()}
 
 
 def bare(node: ast.AST) -> list[str]:
-    """Literal texts with words in what is shown, outside of calls that translate."""
+    """Return literal texts with words in a shown expression, outside of calls that translate."""
     if isinstance(node, ast.Call):
         name = collect.called(node)
         if name in TRANSLATING:
             return []
         inner = [node.func.value] if isinstance(node.func, ast.Attribute) else []
         return [
-            text for part in inner + (node.args if name == "join" else []) for text in bare(part)
+            text
+            for operand in inner + (node.args if name == "join" else [])
+            for text in bare(operand)
         ]
     if isinstance(node, ast.Constant):
         if not isinstance(node.value, str):
@@ -249,15 +260,15 @@ def bare(node: ast.AST) -> list[str]:
 
 
 def shown_bare(tree: ast.AST) -> list[tuple[int, str]]:
-    """Lines and texts that a file shows without translating them."""
-    found = []
+    """Return lines and texts that a file shows without translating them."""
+    texts = []
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and collect.called(node) in SHOWING:
             name = collect.called(node)
-            for at, argument in enumerate(node.args):
-                if at not in UNREAD.get(name, ()):
-                    found += [(node.lineno, text) for text in bare(argument)]
-    return found
+            for position, argument in enumerate(node.args):
+                if position not in UNREAD.get(name, ()):
+                    texts += [(node.lineno, text) for text in bare(argument)]
+    return texts
 
 
 @pytest.mark.parametrize(
@@ -276,13 +287,13 @@ def test_texts_shown_as_they_are_written_are_found():
     ]
 
 
-# ---- messages are told by their templates
+# ---- messages are translated by their templates
 
 
 def upper(template: str) -> str:
-    """A language for tests: everything but the places in capitals."""
-    parts = re.split(r"(\{[^}]*\})", template)
-    return "".join(part if part.startswith("{") else part.upper() for part in parts)
+    """Return a test language: everything except the placeholders in capitals."""
+    segments = re.split(r"(\{[^}]*\})", template)
+    return "".join(segment if segment.startswith("{") else segment.upper() for segment in segments)
 
 
 def test_figures_and_names_stay_as_they_are():
@@ -349,10 +360,10 @@ def test_a_message_that_begins_with_a_name_is_known():
         ("use path: layers, or a limit", "use “Path: layers”, or a limit"),
         ("cell.mount: feature, move", "“Mount: feature”, move"),
         ("(3, 4) and `cell.branch: auto`", "(3, 4) and “Branch: auto”"),
-        ("write fill: lead 5", "write fill: lead 5"),  # no choice of that field
+        ("write fill: lead 5", "write fill: lead 5"),  # the field has no such choice
         ("layers 3: a bead; my/path: layers", "layers 3: a bead; my/path: layers"),
         ("choose another joints.rotation_range", "choose another “Rotation range”"),  # two fields
-        ("use `kind: solid`", "use `kind: solid`"),  # no field of a panel
+        ("use `kind: solid`", "use `kind: solid`"),  # no panel has this field
         ("cell.machine.json is not a file", "cell.machine.json is not a file"),
         ("C:\\cell.machine and cell.machine\\a", "C:\\cell.machine and cell.machine\\a"),
     ],
@@ -362,17 +373,18 @@ def test_messages_call_parameters_as_the_panels_do(text, told):
 
 
 def test_messages_name_the_panel_that_has_the_field():
-    """Read in another panel, such as New Job, they would ask for a field that is not there."""
-    told = as_in_panels("give process.bead_width, or `motion: joint`", str, with_panel=True)
-    assert told == "give “Bead width” (Toolpath), or “Motion: joint” (Program)"
+    """Read in another panel, such as New Job, the message would ask for a missing field."""
+    message = as_in_panels("give process.bead_width, or `motion: joint`", str, with_panel=True)
+    assert message == "give “Bead width” (Toolpath), or “Motion: joint” (Program)"
 
 
 def test_parameters_in_messages_are_those_of_a_panel(collected):
-    """Whatever name of a job file a message has, the window knows how its panel calls it, but those of a job file alone."""
-    told = {
+    """The window knows its own label for every job key in a message, except those of job files
+    only."""
+    keys = {
         match[0] for text in collected.messages for match in NAMED.finditer(as_in_panels(text, str))
     }
-    assert told <= {"strategy.wait", "part.faces", "part.object", "part.scale"}
+    assert keys <= {"strategy.wait", "part.faces", "part.object", "part.scale"}
 
 
 MISTAKES = {
@@ -393,7 +405,7 @@ def test_errors_of_the_core_are_known(mistake, french):
 
 
 def test_what_was_mended_of_a_mesh_is_told_in_french(told):
-    """A box without two of its triangles, with one turned and one twice."""
+    """A box without two of its triangles, with one flipped and one duplicated."""
     points = np.array([[x, y, z] for x in (0, 9) for y in (0, 9) for z in (0, 9)], dtype=float)
     faces = [
         [0, 1, 3],
@@ -425,24 +437,24 @@ def test_the_place_of_a_finding_is_told(told):
     assert told(Issue("error", "X", "it is there", 3, None, 4).where) == "couche 3 point 4"
 
 
-# ---- what stages say
+# ---- messages of stages
 
 
 @pytest.fixture
 def told(french):
-    """What a panel shows in French of a message."""
+    """Return the French text of a message in a panel."""
     return lambda text: in_language(text, lambda source: french["RoboticAM"].get(source, source))
 
 
 @pytest.fixture
 def stages(doc):
-    """A cell, a feature and a toolpath of them."""
-    part = doc.addObject("Part::Sphere", "Sphere")
-    part.Angle1 = 0
+    """Return a cell, a feature and a toolpath of them."""
+    sphere = doc.addObject("Part::Sphere", "Sphere")
+    sphere.Angle1 = 0
     doc.recompute()
-    cell, feature = api.make_cell(doc), api.make_feature(doc, part, layer_height=2)
+    cell, feature = api.make_cell(doc), api.make_feature(doc, sphere, layer_height=2)
     return SimpleNamespace(
-        part=part, cell=cell, feature=feature, toolpath=api.make_toolpath(doc, feature, cell)
+        part=sphere, cell=cell, feature=feature, toolpath=api.make_toolpath(doc, feature, cell)
     )
 
 

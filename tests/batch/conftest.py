@@ -34,7 +34,7 @@ program:
 """
 SERVER = Path(__file__).with_name("command_server.py")
 # seconds of computing, or of not even waiting for the processor, before a command counts as hanging
-PATIENCE = 300
+TIMEOUT_S = 300
 
 
 def used_by(process: int) -> tuple[float, bool]:
@@ -58,7 +58,7 @@ def used_by(process: int) -> tuple[float, bool]:
     return ticks / os.sysconf("SC_CLK_TCK"), wants
 
 
-def ended(process: subprocess.Popen, patience: float = PATIENCE) -> int:
+def wait_for_end(process: subprocess.Popen, patience: float = TIMEOUT_S) -> int:
     """Return the exit status of a process. Raise TimeoutError if it does not end after `patience`
     seconds of computing, or of not even waiting for the processor."""
     idle = 0
@@ -97,7 +97,7 @@ class Commands:
         words: list[str],
         most_seconds: int = 0,
         most_bytes: int = 0,
-        patience: int = PATIENCE,
+        patience: int = TIMEOUT_S,
     ) -> Ended:
         """Run a command; a limit of 0 means no limit. Raise TimeoutError if the command does not
         end after `patience` seconds in which it did not even wait for the processor, or computed
@@ -123,7 +123,7 @@ class Commands:
     def waited(self) -> tuple[int, float]:
         """Return the exit status (negative for a signal) and the processor seconds of the started
         copy."""
-        status, seconds, _ = self._answered("a command", PATIENCE, computes=True)
+        status, seconds, _ = self._answered("a command", TIMEOUT_S, computes=True)
         return status, seconds
 
     def _answered(self, what: str, patience: int, computes: bool) -> tuple[int, float, float]:
@@ -221,7 +221,7 @@ class Workshop:
             capture_output=True,
             text=True,
             encoding="utf-8",
-            timeout=PATIENCE,
+            timeout=TIMEOUT_S,
             check=False,
             stdin=subprocess.DEVNULL,
         )

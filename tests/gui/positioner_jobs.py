@@ -4,10 +4,10 @@
 from freecad_am import api
 
 
-def on_positioner(part, layer_height):
+def make_positioner_job(source, layer_height):
     """Return the joint path, with feature, cell and toolpath in the document of a part."""
-    doc = part.Document
-    feature = api.make_feature(doc, part, layer_height=layer_height, max_from_vertical=10)
+    doc = source.Document
+    feature = api.make_feature(doc, source, layer_height=layer_height, max_from_vertical=10)
     cell = api.make_cell(
         doc,
         machine="kuka-kr8-r2100-2-arc-hw",

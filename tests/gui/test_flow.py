@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""From a selection to a program: every family by one tool, whatever is selected and however; menus, groups, deletion."""
+"""From a selection to a program: one tool for every family and every kind of selection; menus,
+groups, deletion."""
 
 from pathlib import Path
 
@@ -29,8 +30,8 @@ def jobs(doc):
 
 
 def new_job(person, turned=True, **texts):
-    """Click the tool, look at how the selection is understood, and press OK; the panel's texts. turned: as a part of
-    revolution, whatever is proposed."""
+    """Click the tool, read its interpretation of the selection, and press OK; return the panel's
+    texts. turned: as a part of revolution, whatever the panel proposes."""
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     person.until(
@@ -40,19 +41,19 @@ def new_job(person, turned=True, **texts):
     )
     if turned:
         person.as_revolution(panel)
-    told = {
+    panel_texts = {
         name: person.field(panel, name).text() for name in ("Source", "Ground", "reason", "error")
     }
-    told["Kind"] = person.field(panel, "Kind").currentText()
+    panel_texts["Kind"] = person.field(panel, "Kind").currentText()
     for name, text in texts.items():
         person.type(panel, name, text)
     person.press("Ok")
     person.until(lambda: not person.gui.Control.activeDialog(), "the job to be made", 60)
-    return told
+    return panel_texts
 
 
 def cup(doc):
-    """A body of PartDesign that is a cone, within a part that is moved and turned; the body and its outer part."""
+    """Return the body of a PartDesign cone in a moved and rotated part, and its outer part."""
     outer, body = nested_cone(doc, V(40, -20, 5), 12)
     body.Placement.Base = V(3, 4, 5)
     doc.recompute()
@@ -67,20 +68,20 @@ def test_tools_stand_in_the_order_of_the_work(person, hemisphere):
     names = [
         "|" if action.isSeparator() else action.objectName() or action.data() for action in actions
     ]
-    there = [name.removeprefix("RoboticAM_") for name in names if name != "|"]
+    names_ = [name.removeprefix("RoboticAM_") for name in names if name != "|"]
     order = [name for group in GROUPS for name in group]
-    assert there == [name for name in order if name in there] and there[:2] == [
+    assert names_ == [name for name in order if name in names_] and names_[:2] == [
         "OpenPart",
         "NewJob",
     ]
-    for before, after in zip(names, names[1:], strict=False):
-        apart = (
-            next(k for k, group in enumerate(GROUPS) if before[10:] in group)
-            if before != "|"
+    for previous, following in zip(names, names[1:], strict=False):
+        separators = (
+            next(k for k, group in enumerate(GROUPS) if previous[10:] in group)
+            if previous != "|"
             else None
         )
-        if apart is not None and after != "|":
-            assert after[10:] in GROUPS[apart]
+        if separators is not None and following != "|":
+            assert following[10:] in GROUPS[separators]
     menu = next(
         menu
         for menu in person.window.menuBar().findChildren(person.widgets.QMenu)
@@ -121,18 +122,18 @@ def test_a_part_of_revolution_however_it_is_selected(person, coarse, how):
     }[how]
     person.gui.Selection.clearSelection()
     person.gui.Selection.addSelection(doc.Name, select[0].Name, select[1])
-    told = new_job(person)
-    assert told["Kind"] == "Part of revolution" and told["error"] == ""
+    texts = new_job(person)
+    assert texts["Kind"] == "Part of revolution" and texts["error"] == ""
     assert [obj.Status for obj in api.stages_of(doc)][:3] == [
         "up to date"
     ] * 3 and doc.Feature.LayerHeight.Value == 5.0
     wall = api.result(doc.Feature)
-    shown = body.Placement if "link" not in how else link.Placement
-    frame = (outer.Placement if "link" not in how else App.Placement()).multiply(shown)
+    placement = body.Placement if "link" not in how else link.Placement
+    frame = (outer.Placement if "link" not in how else App.Placement()).multiply(placement)
     axis = frame.Rotation.multVec(V(0, 0, 1))
     assert (V(*wall.frame[:3, 2]) - axis).Length < 1e-7
-    away = (V(*wall.frame[:3, 3]) - frame.Base).cross(axis)
-    assert away.Length < 1e-6  # the axis passes through the body as it is shown
+    offset = (V(*wall.frame[:3, 3]) - frame.Base).cross(axis)
+    assert offset.Length < 1e-6  # the axis passes through the body at its visible location
 
 
 def load(doc, *names):
@@ -143,17 +144,17 @@ def load(doc, *names):
 @pytest.mark.always("order1")
 def test_a_wall_on_a_part_is_told_from_its_faces(person, coarse, no_remedies, order):
     doc = App.newDocument("Wall")
-    parts = load(doc, "tube-on-pipe.step", "pipe.step")
+    objects = load(doc, "tube-on-pipe.step", "pipe.step")
     person.gui.Selection.clearSelection()
     for k in order:
-        person.gui.Selection.addSelection(doc.Name, parts[k].Name, "Face1" if k == 0 else "")
-    told = new_job(person, False, Machine="kuka-kr16-2")
+        person.gui.Selection.addSelection(doc.Name, objects[k].Name, "Face1" if k == 0 else "")
+    texts = new_job(person, False, Machine="kuka-kr16-2")
     assert (
-        told["Kind"] == "Wall on a part"
-        and parts[1].Label in told["Ground"]
-        and parts[0].Label in told["reason"]
+        texts["Kind"] == "Wall on a part"
+        and objects[1].Label in texts["Ground"]
+        and objects[0].Label in texts["reason"]
     )
-    assert kinds(doc)[:3] == ["cell", "feature", "toolpath"] and doc.Feature.Substrate == parts[1]
+    assert kinds(doc)[:3] == ["cell", "feature", "toolpath"] and doc.Feature.Substrate == objects[1]
     assert doc.Cell.Machine == "kuka-kr16-2"
 
 
@@ -166,10 +167,10 @@ def test_solids_on_a_hub_are_told_from_what_stands_on_what(person, coarse):
     person.gui.Selection.clearSelection()
     person.gui.Selection.addSelection(doc.Name, blade.Name, "")
     person.gui.Selection.addSelection(doc.Name, hub.Name, "Face1")
-    told = new_job(person, False, Machine="table-xyzac")
+    texts = new_job(person, False, Machine="table-xyzac")
     assert (
-        told["Kind"] == "Solids on a hub"
-        and "Blade is on a cylinder or cone of Hub" in told["reason"]
+        texts["Kind"] == "Solids on a hub"
+        and "Blade is on a cylinder or cone of Hub" in texts["reason"]
     )
     assert doc.Feature.Substrate == hub and list(doc.Feature.BaseFaces[1]) == ["Face1"]
     assert doc.Cell.Setup == "rotary-table"
@@ -182,7 +183,7 @@ def test_solids_on_a_hub_are_told_from_what_stands_on_what(person, coarse):
 
 
 def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
-    """Family, layers and reason of each shape, as `propose_family` has them."""
+    """Family, layers and reason of each shape equal those of `proposed_family`."""
     doc = App.newDocument("Kinds")
     post = Part.makeBox(20, 20, 40)
     hub = Part.makeCylinder(25, 80)
@@ -197,13 +198,13 @@ def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
     }
     for name, shape in shapes.items():
         doc.addObject("Part::Feature", name).Shape = shape
-    told = {}
+    proposals = {}
     person.gui.Selection.clearSelection()
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     for name in shapes:
-        part = doc.getObject(name)
-        person.select(part)
+        obj = doc.getObject(name)
+        person.select(obj)
         person.until(
             lambda name=name: (
                 f": {name} " in person.field(panel, "reason").text()
@@ -212,10 +213,10 @@ def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
             f"a proposal for {name}",
             30,
         )
-        auto = propose_family(SelectedPart(snapshot_of(part), (), None, False, 8.0, True))
+        auto = propose_family(SelectedPart(snapshot_of(obj), (), None, False, 8.0, True))
         assert auto.reason.split(" (")[0].split(";")[0] in person.field(panel, "reason").text()
-        told[name] = person.field(panel, "Kind").currentText()
-    assert told == {
+        proposals[name] = person.field(panel, "Kind").currentText()
+    assert proposals == {
         "Bush": "Part of revolution",
         "Rod": "Solids in plane layers",
         "Tee": "Solids without support",
@@ -278,7 +279,7 @@ def test_a_wrong_selection_is_named_and_the_panel_waits(person, hemisphere, coar
         assert words in person.panel_error(panel), (obj.Label, person.panel_error(panel))
         person.press("Ok")
         assert person.gui.Control.activeDialog()
-    person.select(folder)  # which holds one thing alone
+    person.select(folder)  # the folder holds a single object
     person.until(lambda: person.field(panel, "Source").text() == hemisphere.Label, "the part", 5)
     assert person.panel_error(panel) == ""
     person.as_revolution(panel)
@@ -312,7 +313,7 @@ def test_what_is_wrong_in_a_new_job_is_told_under_its_field(person, hemisphere, 
         )
         person.screenshot(f"new_job_wrong_{field}")
         person.type(panel, field, right)
-        assert not note.isVisible()  # it was about what is no more there
+        assert not note.isVisible()  # its subject is no longer selected
     person.press("Ok")
     person.panel_closed()
     assert len(api.stages_of(hemisphere.Document)) == 5
@@ -350,14 +351,14 @@ def test_the_result_is_seen_whole_and_the_next_step_is_told(person, hemisphere, 
     person.idle(0.2)
     person.select(hemisphere)
     new_job(person)
-    assert not view.getCameraOrientation().isIdentity()  # heights are seen
+    assert not view.getCameraOrientation().isIdentity()  # heights are visible
     assert "The job is ready. Simulate" in person.window.statusBar().currentMessage()
     view.viewFront()
     person.idle(0.2)
     front = view.getCameraOrientation()
     person.select(hemisphere)
     new_job(person)
-    assert view.getCameraOrientation().isSame(front, 1e-6)  # a direction that was chosen stays
+    assert view.getCameraOrientation().isSame(front, 1e-6)  # a direction that the user chose stays
     assert len(jobs(hemisphere.Document)) == 2
 
 
@@ -385,7 +386,7 @@ def test_a_job_is_a_group_that_can_be_left_and_deleted_whole(person, hemisphere,
         hemisphere
     ) and job.ViewObject.Proxy.canDropObject(doc.Cell)
     person.select(job)
-    person.gui.runCommand("Std_Delete")  # asks nothing: else the watch would see it
+    person.gui.runCommand("Std_Delete")  # this asks nothing, or the watch would report it
     person.idle(0.5)
     assert [obj.Name for obj in doc.Objects] == [hemisphere.Name]
     person.gui.runCommand("Std_Undo")
@@ -407,26 +408,26 @@ def test_context_menus_do_what_they_say(person, hemisphere, coarse):
     doc = hemisphere.Document
     person.select(hemisphere)
     new_job(person)
-    found, _menu = entries(person, doc.JointPath)
+    menu_entries, _menu = entries(person, doc.JointPath)
     tools = {"Edit", "Renew", "Simulate", "Program", "SpinMap", "Plots", "ExportPath"}
-    assert tools | {"Input_Toolpath", "Input_Cell"} <= set(found) and all(
-        found[name].isEnabled() for name in tools
+    assert tools | {"Input_Toolpath", "Input_Cell"} <= set(menu_entries) and all(
+        menu_entries[name].isEnabled() for name in tools
     )
-    found["Input_Toolpath"].trigger()
+    menu_entries["Input_Toolpath"].trigger()
     assert [obj.Name for obj in person.gui.Selection.getSelection()] == ["Toolpath"]
     doc.Feature.LayerHeight = 3
-    found, _menu = entries(person, doc.Program)
+    menu_entries, _menu = entries(person, doc.Program)
     assert doc.Program.Status == "stale"
-    found["Renew"].trigger()
+    menu_entries["Renew"].trigger()
     person.idle()
     assert {obj.Status for obj in api.stages_of(doc)} == {"up to date"}
-    found, _menu = entries(person, doc.Toolpath)
-    found["Edit"].trigger()
+    menu_entries, _menu = entries(person, doc.Toolpath)
+    menu_entries["Edit"].trigger()
     person.panel("RoboticAM_Toolpath")
     person.press("Cancel")
     person.panel_closed()
-    found, _menu = entries(person, jobs(doc)[0])
-    found["Shown"].trigger()
+    menu_entries, _menu = entries(person, jobs(doc)[0])
+    menu_entries["Shown"].trigger()
     assert doc.JointPath.ViewObject.Visibility and not doc.Toolpath.ViewObject.Visibility
     person.select(hemisphere)
     from freecad_am.gui.tools import tool
@@ -437,7 +438,7 @@ def test_context_menus_do_what_they_say(person, hemisphere, coarse):
 
 
 def test_a_shape_the_kernel_fails_on_is_told(person, hemisphere, monkeypatch):
-    """Its faults must not be taken for those of a panel that is gone."""
+    """The kernel's errors must not be mistaken for those of a deleted panel."""
 
     def fail(*_, **__):
         raise RuntimeError("Bnd_Box is void")

@@ -20,7 +20,7 @@ from freecad_am.gui.redundancy_map import dock as docks
 from freecad_am.gui.redundancy_map.dock import FINE_STRIDE, NAME
 from freecad_am.gui.redundancy_map.painting import TURN
 from freecad_am.objects.staleness import UP_TO_DATE
-from tests.gui.positioner_jobs import on_positioner
+from tests.gui.positioner_jobs import make_positioner_job
 
 ROBOT = {"limits": "paper"}
 TIMEOUT_S = 30  # s
@@ -485,7 +485,7 @@ def test_a_table_has_no_map(person, hemisphere):
 def test_external_axes_go_along_or_stand_across(person, hand, hemisphere, monkeypatch, tmp_path):
     """Along the path the external axes are as planned; across, one of them varies at the clicked
     point, with a mark at the plan."""
-    path = on_positioner(hemisphere, 12)
+    path = make_positioner_job(hemisphere, 12)
     assert path.Status == UP_TO_DATE, api.issues(path)
     panel, dock = opened(person, path)
     _coloured_by_all_axes(path, dock.source.cell)

@@ -24,7 +24,7 @@ from freecad_am.gui.simulation.dock import SLOW_COLOUR, WRONG_COLOUR
 from freecad_am.gui.simulation.player import run_of
 from freecad_am.kdl import KdlArm
 from freecad_am.objects.joint_path import Planned
-from tests.gui.positioner_jobs import on_positioner
+from tests.gui.positioner_jobs import make_positioner_job
 
 CELLS = {
     "part-on-robot": {"limits": "paper"},
@@ -503,7 +503,7 @@ def test_two_simulations_replace_one_another_and_without_a_path_it_says_so(perso
 def test_positioner_and_its_bodies_are_drawn_where_its_axes_are(person, hemisphere):
     """They are at the poses of PyKDL's chain of the positioner, relative to its base, and the part
     moves with the last one."""
-    path = on_positioner(hemisphere, 15)
+    path = make_positioner_job(hemisphere, 15)
     panel, simulation = opened(person, path)
     scene, links, times = simulation.scene, simulation.scene.external_links, simulation.run.times
     numbers = [link.link for link in links.links]

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is written for Universal Robots: texts to the byte, blends, times, parts, and what is refused.
+"""Universal Robots scripts: exact bytes, blends, times, parts and refusals.
 
-URScript is so close to Python that a text, but for its `end` and `p[`, is run here as Python with functions that keep a list
-of what is asked of the robot: a second opinion that shares nothing with the reader of the post.
+Except for its `end` and `p[`, URScript is so close to Python that the test runs a text as Python,
+with functions that record the robot calls: a second opinion that shares no code with the post's
+reader.
 """
 
 import dataclasses
@@ -39,8 +40,9 @@ TABLE = dataclasses.replace(
 )
 
 
-def carried(of, radius=100.0):
-    """The program with a part on the robot, on a flange that turns with the first axis and shifts with the second."""
+def put_part_on_robot(source, radius=100.0):
+    """Return the program with a part on the robot, on a flange that turns with the first axis and
+    shifts with the second."""
 
     def flange(run):
         poses = np.tile(np.eye(4), (len(run), 1, 1))
@@ -49,28 +51,30 @@ def carried(of, radius=100.0):
         poses[:, 0, 3] = radius * run.joints[:, 1]
         return dataclasses.replace(run, flange=poses)
 
-    blocks = tuple(flange(block) if isinstance(block, Moves) else block for block in of.blocks)
-    return dataclasses.replace(of, blocks=blocks, setup="part-on-robot", carried=(0.0,) * 6)
+    blocks = tuple(flange(block) if isinstance(block, Moves) else block for block in source.blocks)
+    return dataclasses.replace(source, blocks=blocks, setup="part-on-robot", carried=(0.0,) * 6)
 
 
-def tool_on(of):
-    return dataclasses.replace(of, setup="tool-on-robot")
+def put_tool_on_robot(source):
+    return dataclasses.replace(source, setup="tool-on-robot")
 
 
-def shifted(of):
-    """Beads that do not begin where the rapid to them ends."""
+def shift_beads(source):
+    """Return the program with beads that do not begin at the end of the rapid to them."""
 
-    def away(block):
+    def shift(block):
         is_rapid = isinstance(block, Moves) and block.kind == "rapid"
         return dataclasses.replace(block, joints=block.joints - 0.01) if is_rapid else block
 
-    return dataclasses.replace(of, blocks=tuple(away(block) for block in of.blocks))
+    return dataclasses.replace(source, blocks=tuple(shift(block) for block in source.blocks))
 
 
 GOLDENS = {
     "joint": LIMITED,
     "table": TABLE,
-    "carried": carried(shifted(beads(1, 12, layers=2, name="carried", max_points=14))),
+    "carried": put_part_on_robot(
+        shift_beads(beads(1, 12, layers=2, name="carried", max_points=14))
+    ),
 }
 
 
@@ -80,12 +84,13 @@ def test_golden_programs_to_the_byte(root, name):
     assert content == (root / "tests/golden/ur" / file).read_bytes()
 
 
-def executed(files):
-    """(function, arguments by name or place) of everything a script asks of the robot, in order."""
+def run_script(files):
+    """Return (function, arguments by name or position) of every robot call of a script, in
+    order."""
     (content,) = files.values()
     lines = [line for line in content.decode("ascii").split("\n") if line.strip() != "end"]
     text = "\n".join(lines).replace("global platform =", "global platform; platform =")
-    asked = []
+    calls = []
 
     class Pose(tuple):
         def __repr__(self):
@@ -96,10 +101,10 @@ def executed(files):
             return Pose(values)
 
     def keeps(function, result=None):
-        def call(*given, **named):
+        def call(*arguments, **named):
             if result is None:
-                asked.append((function, *given, named) if named else (function, *given))
-            return result(*given) if result else None
+                calls.append((function, *arguments, named) if named else (function, *arguments))
+            return result(*arguments) if result else None
 
         return call
 
@@ -108,13 +113,13 @@ def executed(files):
     def inputs(*pin):
         waited.append(pin)
         if len(waited) % 2 == 0:
-            asked.append(("waited", *pin))
+            calls.append(("waited", *pin))
         return len(waited) % 2 == 0
 
     def analogue(pin):
         waited.append(pin)
         if len(waited) % 2 == 0:
-            asked.append(("below", pin))
+            calls.append(("below", pin))
         return 1e9 if len(waited) % 2 else -1e9
 
     names = {
@@ -135,32 +140,33 @@ def executed(files):
     exec(compile(text, "script", "exec"), names)
     (main,) = (name for name in re.findall(r"^def (\w+)\(\):", text, re.MULTILINE))
     names[main]()
-    return asked
+    return calls
 
 
-def rotated(vector):
-    """The rotation of a vector, by its series."""
+def rotation_by_series(vector):
+    """Return the rotation of a vector, by its series."""
     x, y, z = vector
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    found, term = np.eye(3), np.eye(3)
+    matrix, term = np.eye(3), np.eye(3)
     for k in range(1, 40):
         term = term @ cross / k
-        found = found + term
-    return found
+        matrix = matrix + term
+    return matrix
 
 
-def due(of):
-    """What is to be asked, by the blocks of a program, without numbers that depend on rounding."""
-    for block in of.blocks:
+def expected_calls(source):
+    """Return the expected calls from the blocks of a program, without numbers that depend on
+    rounding."""
+    for block in source.blocks:
         if isinstance(block, Moves):
             for k in range(len(block)):
                 yield ("move", block, k)
         elif isinstance(block, DepositOn):
-            yield ("out", of.deposit_output - 1, True)
+            yield ("out", source.deposit_output - 1, True)
             yield ("sleep", block.lead)
         elif isinstance(block, DepositOff):
             yield ("sleep", block.lead)
-            yield ("out", of.deposit_output - 1, False)
+            yield ("out", source.deposit_output - 1, False)
         elif isinstance(block, Wait):
             yield ("sleep", block.seconds)
         elif isinstance(block, WaitInput):
@@ -170,7 +176,7 @@ def due(of):
 
 
 def random_script(random_program, seed, motion):
-    whole = random_program(seed, motion, continuous=False)
+    program_ = random_program(seed, motion, continuous=False)
     blocks = tuple(
         dataclasses.replace(
             block,
@@ -179,10 +185,10 @@ def random_script(random_program, seed, motion):
         )
         if isinstance(block, Moves)
         else block
-        for block in whole.blocks
+        for block in program_.blocks
     )
     return dataclasses.replace(
-        whole,
+        program_,
         name="script",
         blocks=blocks,
         setup="tool-on-robot",
@@ -195,15 +201,15 @@ def random_script(random_program, seed, motion):
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("motion", ["joint", "cartesian"])
 def test_a_script_run_as_python_asks_for_what_the_program_holds(random_program, seed, motion):
-    of = random_script(random_program, seed, motion)
-    asked = [
+    source = random_script(random_program, seed, motion)
+    calls = [
         call
-        for call in executed(ur.write(of))
+        for call in run_script(ur.write(source))
         if call[0] != "set_tcp" and call[:2] != ("sleep", 0.01)
     ]
-    wanted = [what for what in due(of) if what != ("sleep", 0.0)]
-    assert len(asked) == len(wanted)
-    for call, what in zip(asked, wanted):
+    expected = [what for what in expected_calls(source) if what != ("sleep", 0.0)]
+    assert len(calls) == len(expected)
+    for call, what in zip(calls, expected):
         if what[0] != "move":
             assert call == pytest.approx(what, abs=6e-4) if what[0] == "sleep" else call == what
             continue
@@ -211,16 +217,16 @@ def test_a_script_run_as_python_asks_for_what_the_program_holds(random_program, 
         linear = run.interpolation == "linear"
         assert function == ("movep" if linear else "movej")
         if motion == "joint":
-            near, pose = target, None
+            seed_joints, pose = target, None
         elif linear:
-            near, pose = None, target
+            seed_joints, pose = None, target
         else:
-            _, pose, near = target
-        if near is not None:
-            np.testing.assert_allclose(near, run.joints[k], atol=5.1e-8)
+            _, pose, seed_joints = target
+        if seed_joints is not None:
+            np.testing.assert_allclose(seed_joints, run.joints[k], atol=5.1e-8)
         if pose is not None:
             np.testing.assert_allclose(pose[2][:3], 0.001 * run.position[k], atol=5.1e-8)
-            np.testing.assert_allclose(rotated(pose[2][3:]), run.rotation[k], atol=2e-7)
+            np.testing.assert_allclose(rotation_by_series(pose[2][3:]), run.rotation[k], atol=2e-7)
             np.testing.assert_allclose(pose[1], [0.001, 0.002, 0.003, *pose[1][3:]], atol=1e-9)
         if linear:
             assert (named["a"], named["v"]) == (
@@ -229,47 +235,51 @@ def test_a_script_run_as_python_asks_for_what_the_program_holds(random_program, 
             )
         else:
             assert named["t"] == pytest.approx(run.duration[k], abs=5.1e-7)
-        assert (named["r"] > 0.0) == (not run.stops[k] and of.blend > 0)
+        assert (named["r"] > 0.0) == (not run.stops[k] and source.blend > 0)
 
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("motion", ["joint", "cartesian"])
 def test_random_programs_come_back(random_program, seed, motion):
-    of = random_script(random_program, seed, motion)
-    read = ur.read(ur.write(of))
+    source = random_script(random_program, seed, motion)
+    readback = ur.read(ur.write(source))
     joints, duration, speed, stops = (
-        np.concatenate([getattr(run, name) for run in of.moves])
+        np.concatenate([getattr(run, name) for run in source.moves])
         for name in ("joints", "duration", "speed", "stops")
     )
-    linear = np.concatenate([np.full(len(run), run.interpolation == "linear") for run in of.moves])
-    assert (
-        read.linear.tolist() == linear.tolist()
-        and read.stops.tolist() == (stops | (of.blend == 0)).tolist()
+    linear = np.concatenate(
+        [np.full(len(run), run.interpolation == "linear") for run in source.moves]
     )
-    told = read.joints if motion == "joint" else read.near
-    np.testing.assert_allclose(told[~linear], joints[~linear], atol=5.1e-8)
-    assert read.digits == 0.5e-7 if motion == "joint" else read.near_digits == 0.5e-7
-    np.testing.assert_allclose(read.duration[~linear], duration[~linear], atol=5.1e-7)
-    np.testing.assert_allclose(read.speed[linear], speed[linear], atol=5.1e-4)
+    assert (
+        readback.linear.tolist() == linear.tolist()
+        and readback.stops.tolist() == (stops | (source.blend == 0)).tolist()
+    )
+    stated_joints = readback.joints if motion == "joint" else readback.near
+    np.testing.assert_allclose(stated_joints[~linear], joints[~linear], atol=5.1e-8)
+    assert readback.digits == 0.5e-7 if motion == "joint" else readback.near_digits == 0.5e-7
+    np.testing.assert_allclose(readback.duration[~linear], duration[~linear], atol=5.1e-7)
+    np.testing.assert_allclose(readback.speed[linear], speed[linear], atol=5.1e-4)
     if motion == "cartesian":
         position, rotation = (
-            np.concatenate([getattr(run, name) for run in of.moves])
+            np.concatenate([getattr(run, name) for run in source.moves])
             for name in ("position", "rotation")
         )
-        np.testing.assert_allclose(read.position, position, atol=5.1e-5)
-        np.testing.assert_allclose(read.rotation, rotation, atol=2e-7)
+        np.testing.assert_allclose(readback.position, position, atol=5.1e-5)
+        np.testing.assert_allclose(readback.rotation, rotation, atol=2e-7)
 
 
 def test_rotations_of_half_a_turn_and_of_none():
     for axis in np.eye(3)[[0, 1, 2]], np.array([[0.6, 0.0, 0.8], [-0.6, 0.8, 0.0]]):
         for angle in (0.0, 1e-9, 1e-4, 3.0, np.pi - 1e-7, np.pi):
-            given = np.array([rotated(angle * one) for one in axis])
+            given = np.array([rotation_by_series(angle * component) for component in axis])
             vectors = ROTATION_VECTOR.numbers(given)
-            np.testing.assert_allclose([rotated(vector) for vector in vectors], given, atol=1e-8)
+            np.testing.assert_allclose(
+                [rotation_by_series(vector) for vector in vectors], given, atol=1e-8
+            )
             assert np.linalg.norm(vectors, axis=1).max() <= np.pi + 1e-12
 
 
-# blends
+# ---- blends
 
 
 def radii(files):
@@ -284,51 +294,56 @@ def radii(files):
 def test_blends_are_two_fifths_of_the_shorter_neighbour_and_never_meet(blend):
     duration = np.array([0.5, 1.0, 0.25, 0.5, 2.0])
     run = moves("deposit", np.zeros((5, 6)), duration)  # 6 mm/s
-    of = tool_on(program(moves("rapid", np.zeros(6)), DepositOn(), run, DepositOff(), blend=blend))
-    ways = 6.0 * duration
-    found = radii(ur.write(of))
-    assert found == pytest.approx(
-        [0.0, *(0.004 * blend * np.minimum(ways[:-1], ways[1:])), 0.0], abs=0.0011
+    source = put_tool_on_robot(
+        program(moves("rapid", np.zeros(6)), DepositOn(), run, DepositOff(), blend=blend)
     )
-    assert all(one + other <= way for one, other, way in zip(found[1:], found[2:], ways[1:]))
+    lengths = 6.0 * duration
+    blend_radii = radii(ur.write(source))
+    assert blend_radii == pytest.approx(
+        [0.0, *(0.004 * blend * np.minimum(lengths[:-1], lengths[1:])), 0.0], abs=0.0011
+    )
+    assert all(
+        radius + next_radius <= length
+        for radius, next_radius, length in zip(blend_radii[1:], blend_radii[2:], lengths[1:])
+    )
 
 
 def test_the_tool_that_blends_count_on_is_one_that_moves_where_the_part_spins():
-    """A part that turns about the flange's own axis leaves the middle of the flange where it is."""
+    """A part that turns about the flange's own axis does not move the middle of the flange."""
     values = np.zeros((9, 6))
     values[:, 0] = np.degrees(0.05 * np.arange(9))
-    of = carried(
+    source = put_part_on_robot(
         program(
             moves("rapid", values[0]), DepositOn(), moves("deposit", values[1:], 0.5), DepositOff()
         )
     )
-    files = ur.write(of)
-    told = re.search(rb"set_tcp\(p\[(.*?), (.*?), ", files["part.script"])
-    assert abs(float(told[1])) + abs(float(told[2])) == pytest.approx(0.2)
+    files = ur.write(source)
+    match = re.search(rb"set_tcp\(p\[(.*?), (.*?), ", files["part.script"])
+    assert abs(float(match[1])) + abs(float(match[2])) == pytest.approx(0.2)
     chord = 2.0 * 200.0 * np.sin(0.025)
     assert radii(files)[1:-1] == pytest.approx([0.4 * chord] * 7, abs=0.0011)
 
 
 def test_a_blend_too_small_to_be_written_is_refused():
     values = np.zeros((4, 6))
-    of = carried(
+    source = put_part_on_robot(
         program(moves("rapid", values[0]), DepositOn(), moves("deposit", values, 0.5), DepositOff())
     )
     assert "stop there with the deposit on" in refusal(
-        of, code="BLEND_RADIUS", where="layer 0 bead 0"
+        source, code="BLEND_RADIUS", where="layer 0 bead 0"
     )
-    assert set(radii(ur.write(dataclasses.replace(of, blend=0)))) == {0.0}
+    assert set(radii(ur.write(dataclasses.replace(source, blend=0)))) == {0.0}
 
 
-# events and parts
+# ---- events and parts
 
 
 def test_the_order_of_a_layer():
-    of = program(
+    source = program(
         LayerStart(12), moves("rapid", np.zeros((2, 6))), DepositOn(0.5), moves("deposit", np.zeros((1, 6))),
         DepositOff(0.125), Wait(0.0001), WaitInput(12), WaitBelow(2, 1.75, 12, 0), Call("clean_1"), deposit_output=9,
     )  # fmt: skip
-    (content,) = ur.write(tool_on(of)).values()
+    (content,) = ur.write(put_tool_on_robot(source)).values()
     lines = [
         re.sub(r"\(\[.*\], a=.*, t", "(t", line.strip()) for line in content.decode().split("\n")
     ]
@@ -338,32 +353,34 @@ def test_the_order_of_a_layer():
         "set_configurable_digital_out(0, False)", "sleep(0.001)", "while get_configurable_digital_in(3) == False:",
         "sleep(0.010)", "end", "while get_standard_analog_in(1) >= 1.750000:", "sleep(0.100)", "end", "clean_1()", "end", "",
     ]  # fmt: skip
-    dry = ur.write(tool_on(dataclasses.replace(of, dry_run=True)))["part.script"].decode()
+    dry = ur.write(put_tool_on_robot(dataclasses.replace(source, dry_run=True)))[
+        "part.script"
+    ].decode()
     assert "digital_out" not in dry and "# dry run: no deposit" in dry
 
 
 def test_parts_are_functions_of_whole_beads_in_one_file():
-    of = tool_on(beads(3, 20, layers=4, max_points=50))
-    (content,) = ur.write(of).values()
+    source = put_tool_on_robot(beads(3, 20, layers=4, max_points=50))
+    (content,) = ur.write(source).values()
     text = content.decode()
-    parts = re.split(r"(?m)^  def part\d\d\(\):$", text)[1:]
-    assert len(parts) == 6 and re.findall(r"(?m)^  (part\d\d)\(\)$", text) == [
+    part_texts = re.split(r"(?m)^  def part\d\d\(\):$", text)[1:]
+    assert len(part_texts) == 6 and re.findall(r"(?m)^  (part\d\d)\(\)$", text) == [
         f"part{n:02d}" for n in range(1, 7)
     ]
     assert (
-        all(part.count("True") == part.count("False") == 2 for part in parts)
+        all(part_text.count("True") == part_text.count("False") == 2 for part_text in part_texts)
         and "264 moves in 6 parts" in text
     )
-    whole = executed(ur.write(dataclasses.replace(of, max_points=10**6)))
-    assert executed({"part.script": content}) == whole
+    complete = run_script(ur.write(dataclasses.replace(source, max_points=10**6)))
+    assert run_script({"part.script": content}) == complete
 
 
-# refusals
+# ---- refusals
 
 
-def refusal(of, *, code, where=None):
+def refusal(source, *, code, where=None):
     with pytest.raises(InputError) as raised:
-        ur.write(of)
+        ur.write(source)
     assert raised.value.code == code and where in (None, raised.value.where)
     return raised.value.message
 
@@ -374,10 +391,10 @@ def refusal(of, *, code, where=None):
     ("", "empty", "am"),
 ])  # fmt: skip
 def test_names_the_controller_refuses(name, why, proposal):
-    of = tool_on(program(moves("rapid", np.zeros(6)), name=name))
-    message = refusal(of, code="PROGRAM_NAME", where="name")
+    source = put_tool_on_robot(program(moves("rapid", np.zeros(6)), name=name))
+    message = refusal(source, code="PROGRAM_NAME", where="name")
     assert why in message and message.endswith(f"use {proposal!r}")
-    assert list(ur.write(dataclasses.replace(of, name=proposal))) == [f"{proposal}.script"]
+    assert list(ur.write(dataclasses.replace(source, name=proposal))) == [f"{proposal}.script"]
 
 
 def test_what_no_script_says_is_refused():
@@ -389,28 +406,28 @@ def test_what_no_script_says_is_refused():
         code="UNSUPPORTED_SETUP",
         where="cell.setup",
     )
-    refusal(tool_on(GOLDEN_JOINT), code="ENDLESS_AXIS", where="cell.limits")
-    refusal(program(still), code="NO_POSITIONS")  # a part on a robot whose flange is not told
+    refusal(put_tool_on_robot(GOLDEN_JOINT), code="ENDLESS_AXIS", where="cell.limits")
+    refusal(program(still), code="NO_POSITIONS")  # a part on a robot without known flange poses
     refusal(
-        tool_on(program(still, DepositOn(), deposit_output=17)),
+        put_tool_on_robot(program(still, DepositOn(), deposit_output=17)),
         code="DEPOSIT_OUTPUT",
         where="program.deposit_output",
     )
     refusal(
-        tool_on(program(still, WaitInput(17))),
+        put_tool_on_robot(program(still, WaitInput(17))),
         code="DEPOSIT_INPUT",
         where="process.between_layers.input",
     )
-    refusal(tool_on(program(still, WaitBelow(3, 1.0, 0, 0))), code="ANALOGUE_INPUT")
+    refusal(put_tool_on_robot(program(still, WaitBelow(3, 1.0, 0, 0))), code="ANALOGUE_INPUT")
     refusal(
-        tool_on(program(still, Call("Part-2"))),
+        put_tool_on_robot(program(still, Call("Part-2"))),
         code="PROGRAM_NAME",
         where="process.between_layers.call",
     )
     assert "program of the job" in refusal(
-        tool_on(program(still, Call("part"))), code="PROGRAM_NAME"
+        put_tool_on_robot(program(still, Call("part"))), code="PROGRAM_NAME"
     )
-    short = tool_on(program(still, moves("deposit", np.zeros((3, 6)), 0.001, 4, 2)))
+    short = put_tool_on_robot(program(still, moves("deposit", np.zeros((3, 6)), 0.001, 4, 2)))
     assert "1 ms, less than the 2 ms" in refusal(short, code="MOVE_TIME", where="layer 4 bead 2")
     run = dataclasses.replace(TABLE.blocks[2], speed=np.array([6.0, 1000.1]))
     refusal(dataclasses.replace(TABLE, blocks=(*TABLE.blocks[:2], run)), code="MOVE_SPEED")
@@ -419,11 +436,13 @@ def test_what_no_script_says_is_refused():
 
 
 def test_a_rapid_of_no_time_takes_a_millisecond():
-    (content,) = ur.write(tool_on(program(moves("rapid", np.zeros((3, 6)), 0.0)))).values()
+    (content,) = ur.write(
+        put_tool_on_robot(program(moves("rapid", np.zeros((3, 6)), 0.0)))
+    ).values()
     assert re.findall(rb"t=([\d.]+)", content) == [b"0.001000"] * 3
 
 
-# reading
+# ---- reading
 
 
 def by_hand(pattern="", replacement=""):
@@ -475,5 +494,5 @@ def test_two_files_and_other_characters_are_refused():
 
 
 def test_coarse_digits_of_an_edited_text_are_told():
-    read = ur.read(by_hand(r"v=0\.006000", "v=0.006"))
-    assert read.speed_digits == 0.5 and ur.read(by_hand()).speed_digits == pytest.approx(0.0005)
+    readback = ur.read(by_hand(r"v=0\.006000", "v=0.006"))
+    assert readback.speed_digits == 0.5 and ur.read(by_hand()).speed_digits == pytest.approx(0.0005)

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Killed at any moment over earlier outputs: each file whole, the set of one run, and no litter after the next run.
-
-Every run has another travel speed, which each of its files tells.
-"""
+"""A command killed at any moment over earlier outputs leaves complete files of a single run, and
+the next run removes the remains. Every run has another travel speed, which each of its files
+states."""
 
 import contextlib
 import io
@@ -22,10 +21,10 @@ from freecad_am import api
 from freecad_am.batch import console, row_table, staging
 from freecad_am.batch import output_folder as outputs
 from freecad_am.core.issues import InputError
-from tests.batch.conftest import COMMANDS, ended, used_by
+from tests.batch.conftest import COMMANDS, used_by, wait_for_end
 
 KINDS = ("plan", "plan", "export", "batch")
-TICK = 0.01  # s, in which the system counts what of the processor was used
+TICK = 0.01  # s, the system's resolution of processor time
 SIGNALS = (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 OLD = {
     "cup.FCStd": b"old",
@@ -56,14 +55,14 @@ def files(folder):
 
 
 def publish(folder, content, session=None):
-    with outputs.Outputs(str(folder), session) as made:
+    with outputs.Outputs(str(folder), session) as outputs_:
         for name, data in content.items():
-            made.write(name, data)
-        made.publish(outputs.earlier_outputs(made.folder))
+            outputs_.write(name, data)
+        outputs_.publish(outputs.earlier_outputs(outputs_.folder))
 
 
 def in_child(work):
-    """The status of a process that does the work."""
+    """Return the status of a process that does the work."""
     pid = os.fork()
     if not pid:
         try:
@@ -75,15 +74,15 @@ def in_child(work):
 
 
 def dying(monkeypatch, step, what):
-    """Patches what changes folders so that `what` is done before the call number `step`."""
+    """Patch functions that change folders so that `what` runs before call number `step`."""
     calls = []
 
     def counted(real):
-        def called(*given, **more):
-            calls.append(given)
+        def called(*arguments, **options):
+            calls.append(arguments)
             if len(calls) == step:
                 what()
-            return real(*given, **more)
+            return real(*arguments, **options)
 
         return called
 
@@ -93,7 +92,7 @@ def dying(monkeypatch, step, what):
 
 @pytest.mark.parametrize("before", [OLD, {}], ids=["over an earlier set", "first"])
 def test_killed_at_any_step_the_next_run_finds_one_set(monkeypatch, tmp_path, before):
-    seen = set()
+    outcomes = set()
     for step in range(1, 60):
         out = tmp_path / str(step)
         out.mkdir()
@@ -112,19 +111,19 @@ def test_killed_at_any_step_the_next_run_finds_one_set(monkeypatch, tmp_path, be
                 NEW.get(name),
                 b"mine",
             )
-        with outputs.Outputs(str(out)):  # the next run, which comes to nothing
+        with outputs.Outputs(str(out)):  # the next run, which does nothing
             pass
-        found = files(out)
-        assert found.pop("notes.txt") == b"mine"
-        assert found in (before, NEW), (step, found)
+        output_files = files(out)
+        assert output_files.pop("notes.txt") == b"mine"
+        assert output_files in (before, NEW), (step, output_files)
         assert not list(out.glob(".*"))
-        seen.add(found == NEW)
+        outcomes.add(output_files == NEW)
         if status == 0:
             break
         assert status == 9
     else:
         pytest.fail("the steps did not end")
-    assert step > 8 and seen == {True, False}
+    assert step > 8 and outcomes == {True, False}
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
@@ -145,15 +144,15 @@ def test_asked_to_end_while_files_are_moved_it_ends_with_all_of_them(monkeypatch
                 os._exit(130)
 
         status = in_child(work)
-        found = files(out)
-        assert found in (OLD, NEW) and not list(out.glob(".*")), (step, found)
+        output_files = files(out)
+        assert output_files in (OLD, NEW) and not list(out.glob(".*")), (step, output_files)
         if status == 0:
             break
         assert status == 130
         assert told.read_text() == (
-            "nothing was written" if found == OLD else "the outputs were already complete"
+            "nothing was written" if output_files == OLD else "the outputs were already complete"
         )
-    assert found == NEW and step > 8
+    assert output_files == NEW and step > 8
 
 
 def test_what_cannot_be_moved_leaves_the_earlier_set(tmp_path, monkeypatch):
@@ -174,15 +173,15 @@ def test_two_runs_in_one_folder_are_told_and_leave_one_set(tmp_path):
         def say(self, line):
             lines.append(line)
 
-    first = outputs.Outputs(str(tmp_path), Told())
+    first_run = outputs.Outputs(str(tmp_path), Told())
     assert not lines
     for name, data in OLD.items():
-        first.write(name, data)
+        first_run.write(name, data)
     publish(tmp_path, NEW, Told())
     assert len(lines) == 1 and lines[0].startswith("note[BUSY]") and "-o" in lines[0]
     assert {name for name in files(tmp_path) if not name.startswith(".")} == set(NEW)
-    with first:
-        first.publish(outputs.earlier_outputs(first.folder))
+    with first_run:
+        first_run.publish(outputs.earlier_outputs(first_run.folder))
     assert files(tmp_path) == OLD
 
 
@@ -209,13 +208,13 @@ class Launched:
         return self.process.poll() is None
 
     def waited(self):
-        """Exit status, negative for a signal, and s of the processor."""
-        return ended(self.process), used_by_ended() - self.before
+        """Return exit status, negative for a signal, and processor time in s."""
+        return wait_for_end(self.process), used_by_ended() - self.before
 
 
 class Copied:
-    """The same in a copy of a process that has all modules: none of the kills comes while these are imported, which writes
-    nothing."""
+    """The same in a copy of a process that has all modules, so that no kill happens during imports,
+    which write nothing."""
 
     def __init__(self, shop, words):
         self.pid = COMMANDS.start(shop.folder, words)
@@ -228,12 +227,12 @@ class Copied:
 
 
 def used_by_ended():
-    """s of the processor of the processes that were started here and ended."""
+    """Return the processor time in s of the ended child processes."""
     return sum(os.times()[2:4])
 
 
 class Bench:
-    """Runs commands over earlier outputs, kills them and looks at what is left."""
+    """Run commands over earlier outputs, kill them and check the remaining files."""
 
     def __init__(self, workshop, seed, start):
         self.shop, self.random, self.speed, self.begun = workshop, random.Random(seed), 4.0, start
@@ -243,7 +242,7 @@ class Bench:
             assert status == 0
 
     def start(self, kind):
-        """A command of a speed that none before had."""
+        """Start a command with a new speed."""
         self.speed = round(self.speed + 0.01, 2)
         self.shop.write_job(
             self.shop.text.replace("layer_height: 4 mm", "layer_height: 8 mm")
@@ -263,7 +262,7 @@ class Bench:
         return self.begun(self.shop, words)
 
     def save(self):
-        """The document that is exported, of the speed at hand."""
+        """Save the document for the export, with the current speed."""
         path = self.shop.folder / "saved.FCStd"
         document = (
             FreeCAD.openDocument(str(path)) if path.exists() else FreeCAD.newDocument("Saved")
@@ -273,9 +272,9 @@ class Bench:
                 api.stages_of(document, "toolpath")[0].TravelSpeed = f"{self.speed} mm/s"
                 document.save()
                 return
-            part = api.open_part(document, str(self.shop.folder / "cup.step"))
+            imported_part = api.open_part(document, str(self.shop.folder / "cup.step"))
             cell = api.make_cell(document, limits="paper", platform_diameter=100)
-            feature = api.make_feature(document, part, layer_height=8, chord_error=0.1)
+            feature = api.make_feature(document, imported_part, layer_height=8, chord_error=0.1)
             toolpath = api.make_toolpath(document, feature, cell, travel_speed=f"{self.speed} mm/s")
             api.make_program(document, api.make_joint_path(document, toolpath, cell), name="cup")
             document.saveAs(str(path))
@@ -283,8 +282,8 @@ class Bench:
             FreeCAD.closeDocument(document.Name)
 
     def kill(self, kind):
-        """Start a command and kill it at some moment: the moment, as a share of what it takes of the processor, which a busy
-        machine leaves as it is, and the signal."""
+        """Start a command and kill it at a random moment. Return the moment, as a share of its
+        processor time, which does not depend on the load of the machine, and the signal."""
         process, number = self.start(kind), self.random.choice(SIGNALS)
         share = self.random.uniform(0.1, 1.02)
         while process.at_work() and used_by(process.pid)[0] < share * self.took[kind]:
@@ -312,39 +311,40 @@ class Bench:
             ):  # killed in the milliseconds in which files are moved
                 for name, data in files(folder).items():
                     if not name.startswith(staging.PREFIX):
-                        speed(name, data)  # each is whole
+                        speed(name, data)  # each is complete
                 with outputs.Outputs(
                     str(folder)
-                ):  # and the next run, whatever comes of it, finishes that first
+                ):  # and the next run finishes that first, whatever its own result
                     pass
                 self.finished += 1
-            found = {
+            file_speeds = {
                 name: data
                 for name, data in files(folder).items()
                 if not name.startswith(".unfinished")
             }
-            speeds = {name: speed(name, data) for name, data in found.items()}
+            speeds = {name: speed(name, data) for name, data in file_speeds.items()}
             assert len(set(speeds.values()) - {None}) <= 1, speeds
-            if found and folder.name != "export":
-                programs = json.loads(found["report.json"])["programs"]
-                assert set(found) == {
+            if file_speeds and folder.name != "export":
+                programs = json.loads(file_speeds["report.json"])["programs"]
+                assert set(file_speeds) == {
                     "cup.FCStd",
                     "report.json",
                     "report.html",
                     "waypoints.csv",
                     *programs,
                 }
-            called = re.findall(rb"CALL (CUP\d+)", found.get("program/CUP.LS", b""))
-            parts = {name for name in found if re.fullmatch(r"program/CUP\d+\.LS", name)}
-            assert {f"program/{name.decode()}.LS" for name in called} == parts
+            called = re.findall(rb"CALL (CUP\d+)", file_speeds.get("program/CUP.LS", b""))
+            part_files = {name for name in file_speeds if re.fullmatch(r"program/CUP\d+\.LS", name)}
+            assert {f"program/{name.decode()}.LS" for name in called} == part_files
 
     def assert_no_litter(self):
-        kept = (".cache", row_table.NAME)  # what `batch --resume` goes by is an output
-        assert not [path for path in self.shop.folder.rglob(".*") if path.name not in kept]
+        allowed = (".cache", row_table.NAME)  # the table that `batch --resume` reads is an output
+        assert not [path for path in self.shop.folder.rglob(".*") if path.name not in allowed]
 
 
 def speed(name, data):
-    """The travel speed that a file tells, None where it tells none; fails where the file is not whole."""
+    """Return the travel speed that a file states, None if it states none; fail if the file is
+    incomplete."""
     if name.endswith(".json"):
         return float(json.loads(data)["process"]["travel_speed_mm_s"])
     if name.endswith(".html"):
@@ -369,8 +369,8 @@ def speed(name, data):
             2,
         )
     assert data.rstrip().endswith(b"/END")
-    found = re.search(rb"Travel speed ([\d.]+) mm/s", data)
-    return float(found[1]) if found else None
+    match = re.search(rb"Travel speed ([\d.]+) mm/s", data)
+    return float(match[1]) if match else None
 
 
 def assert_survives(workshop, seed, kills, whole_every, start):
@@ -383,8 +383,8 @@ def assert_survives(workshop, seed, kills, whole_every, start):
         try:
             bench.assert_one_set()
             if number % whole_every == whole_every - 1:
-                for other in dict.fromkeys(KINDS):
-                    assert bench.start(other).waited()[0] == 0, other
+                for kind_ in dict.fromkeys(KINDS):
+                    assert bench.start(kind_).waited()[0] == 0, kind_
                 bench.assert_one_set()
                 bench.assert_no_litter()
         except AssertionError as error:
