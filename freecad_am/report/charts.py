@@ -28,7 +28,7 @@ TITLES = {
 }
 MAX_LAYERS = 24  # maximum number of curves in a chart
 MAX_PATH_LAYERS, MAX_PATH_POINTS = 40, 12_000  # maximum per method in the chart of both paths
-AROUND = Quantity("v around the wall", "deg")
+ANGLE_AROUND_WALL = Quantity("v around the wall", "deg")
 ALONG = Quantity("length of the bead", "%")
 DISTANCE = Quantity("local distance", "mm")
 METHOD_COLOURS = {"iso-parameter": 1, "constant-distance": 0}
@@ -66,7 +66,7 @@ def distance_charts(compared: Sequence[Compared], layer_height: float) -> list[C
     return [
         Chart(
             Text("{}: {:.4g} to {:.4g} mm", TITLES[wall.method], wall.smallest, wall.largest),
-            AROUND,
+            ANGLE_AROUND_WALL,
             DISTANCE,
             _layer_curves([360.0 * around for around in wall.around], wall.distance),
             marks=((layer_height, Text("requested: {:g} mm", layer_height)),),
@@ -87,7 +87,7 @@ def step_chart(wall: Compared, layer_height: float) -> Chart:
     margin = max(0.08 * (high - low), 1.0)
     return Chart(
         f"\u0394 up the lines v = const: {low:.0f} to {high:.0f} %",
-        AROUND,
+        ANGLE_AROUND_WALL,
         Quantity("share of the layer height", "%"),
         _layer_curves([360.0 * around for around in wall.around], steps),
         span=(low - margin, high + margin),

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache, cached_property
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +16,9 @@ from ..plots.chart import PAGE, Chart, convert_chart, fit, together
 from ..plots.pictures import Rows, rows
 from ..plots.source import Source
 from . import units
-from .figures import OfFeature
+
+if TYPE_CHECKING:  # figures import pictures where a job has them
+    from .figures import OfFeature
 
 HALF, FULL_WIDTH, TALL, MAP, TALLEST = 460, 940, 230, 330, 620  # pixels
 MISSING = "The plots are missing, because matplotlib is not installed; install python3-matplotlib and plan again."

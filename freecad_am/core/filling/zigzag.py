@@ -238,12 +238,12 @@ HAIR = 1e-6  # in spacings; distance of columns from corners
 PLAIN = 0.08  # in strips; deviation of a strip from its full height at which links may begin
 SMOOTHED = 0.4  # in spacings; length to either side over which a line is smoothed
 # in strips; deviation of the wall from a straight line next to a link, between and beside the lines
-STRAIGHT, STRAIGHT_BESIDE = 0.15, 0.3
+MAX_BEND_IN_MIDDLE, MAX_BEND_AT_SIDES = 0.15, 0.3
 CLEAR = 0.05  # in spacings; distance of the points of a line from a link
 # in strips; length of a line next to a link over which it leaves narrow parts of other strips open,
 # because their links fill them
 CLIPPED = 2.0
-BESIDE = 0.9  # in half strips; place beside the lines where this deviation is measured
+SIDE_POSITION = 0.9  # in half strips; place beside the lines where this deviation is measured
 TAPER = 0.9  # of a strip; width at the first point of a leg that tapers into an acute corner
 # fraction of the distance from an acute corner at which the legs have the minimum width; there they
 # turn
@@ -668,9 +668,9 @@ def _is_straight(
 ) -> bool:
     """Whether the wall next to a link is straight, between and beside the two lines."""
     for share, tolerance in (
-        (0.5, STRAIGHT),
-        (-0.5 * BESIDE, STRAIGHT_BESIDE),
-        (1.0 + 0.5 * BESIDE, STRAIGHT_BESIDE),
+        (0.5, MAX_BEND_IN_MIDDLE),
+        (-0.5 * SIDE_POSITION, MAX_BEND_AT_SIDES),
+        (1.0 + 0.5 * SIDE_POSITION, MAX_BEND_AT_SIDES),
     ):
         level = grid.middle(row) + share * grid.height
         places = sense * crossings(list(borders), level)
