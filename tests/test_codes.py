@@ -52,10 +52,10 @@ class CodeCollector(ast.NodeVisitor):
 
 @pytest.fixture(scope="module")
 def found(root):
-    every = CodeCollector()
+    collector = CodeCollector()
     for path in (root / "freecad_am").rglob("*.py"):
-        every.visit(ast.parse(path.read_text(encoding="utf-8")))
-    return every
+        collector.visit(ast.parse(path.read_text(encoding="utf-8")))
+    return collector
 
 
 @pytest.fixture(scope="module")

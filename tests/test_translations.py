@@ -321,17 +321,17 @@ def test_figures_and_names_stay_as_they_are():
 
 
 def test_a_message_that_begins_with_a_name_is_known():
-    known, cut = Text("it has {} faces", 12), Text("{} is cut", "pipe")
+    known_text, cut = Text("it has {} faces", 12), Text("{} is cut", "pipe")
     for text in (
         Text("{} is a mesh", "pipe"),
-        Text("{}: {}", "pipe", known),
-        Text("{}; use {}", cut, known),
+        Text("{}: {}", "pipe", known_text),
+        Text("{}; use {}", cut, known_text),
     ):
         assert names_first(text), text
     for text in (
-        known,
+        known_text,
         Text("{} is a mesh; use a shape", "cell"),
-        Text("{}; use another", known),
+        Text("{}; use another", known_text),
         "of none of these",
         "",
     ):

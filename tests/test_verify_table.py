@@ -75,7 +75,7 @@ def planned_events(program):
     return tuple(events)
 
 
-def with_first_unset(duration):
+def unset_first(duration):
     """Return values with the first one unset: the duration of the first move depends on where the
     machine starts."""
     duration = duration.copy()
@@ -128,9 +128,9 @@ def write_program(cell, motion, output):
     if output == "directions":
         direction = rounded(column("direction"), UNIT)
         fields |= {"direction": direction, "direction_digits": UNIT}
-        return program, ReadMoves(None, 0.0, with_first_unset(nothing), deposit, *flags, **fields)
+        return program, ReadMoves(None, 0.0, unset_first(nothing), deposit, *flags, **fields)
     return program, ReadMoves(
-        np.where(slides, np.nan, joints), RAD, with_first_unset(nothing), deposit, *flags, **fields
+        np.where(slides, np.nan, joints), RAD, unset_first(nothing), deposit, *flags, **fields
     )
 
 
@@ -191,7 +191,7 @@ def test_times_that_do_not_give_the_speed_are_caught(planned):
             verify(cell, motion, program, dataclasses.replace(readback, duration=times))
         ) == {"VERIFY_TIME"}
     # a rapid at full machine speed has no time; a bead must have one
-    times = with_first_unset(np.where(readback.deposit, readback.duration, np.nan))
+    times = unset_first(np.where(readback.deposit, readback.duration, np.nan))
     assert verify(cell, motion, program, dataclasses.replace(readback, duration=times)).issues == ()
     times[np.flatnonzero(readback.deposit)[5]] = np.nan
     assert codes(verify(cell, motion, program, dataclasses.replace(readback, duration=times))) == {

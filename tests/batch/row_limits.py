@@ -15,7 +15,7 @@ KRL = r"PTP \{{[^}}]*\bA{} (-?\d+\.\d+)"
 FANUC, VAL3 = r"J{}= *(-?\d*\.\d+) deg", r"<Value [^>]*\bj{}=\"(-?\d+\.\d+)\""
 
 
-def _told(machine, limits):
+def _read_limits(machine, limits):
     machine_data = json.loads((MACHINES / f"{machine}.json").read_text(encoding="utf-8"))
     return machine_data, machine_data["limits"][limits]
 
@@ -40,10 +40,10 @@ def most_beyond(joints, told):
     )
 
 
-def beyond(waypoints, machine, limits):
+def waypoint_excess(waypoints, machine, limits):
     """Return the largest excess, in degrees or mm, of any row of waypoints.csv over a limit, rapids
     included."""
-    machine_data, ranges = _told(machine, limits)
+    machine_data, ranges = _read_limits(machine, limits)
     with open(waypoints, encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     names = [
@@ -91,7 +91,7 @@ def told_joints(files, machine):
 def beyond_in_text(files, machine, limits):
     """Return the largest excess, in degrees or mm, of any joint value in the files {name: text} of
     a program over a limit."""
-    return most_beyond(told_joints(files, machine), _told(machine, limits)[1])
+    return most_beyond(told_joints(files, machine), _read_limits(machine, limits)[1])
 
 
 def text_of(folder):
@@ -106,6 +106,6 @@ def text_of(folder):
 def over_all(out, machine, limits):
     """Return the same of waypoints.csv and of the program in an output folder."""
     return max(
-        beyond(out / "waypoints.csv", machine, limits),
+        waypoint_excess(out / "waypoints.csv", machine, limits),
         beyond_in_text(text_of(out / "program"), machine, limits),
     )

@@ -22,8 +22,8 @@ from freecad_am.objects.shapes.bodies import Taken
 UP = Vector(0, 0, 1)
 
 
-def proposed_for(*given, **more):
-    return propose_family(SelectedPart(*given, **more))
+def proposed_for(*arguments, **options):
+    return propose_family(SelectedPart(*arguments, **options))
 
 
 def tube(outer, inner, height):

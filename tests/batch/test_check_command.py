@@ -13,7 +13,7 @@ import pytest
 from freecad_am import interop
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.read_back.selected import into_platform
-from tests.posts.planned_jobs import SETUPS, WAYS, written
+from tests.posts.planned_jobs import SETUPS, WAYS, write_program
 
 VARIANT = WAYS[0]  # the variant: FANUC, in joints
 
@@ -21,7 +21,7 @@ VARIANT = WAYS[0]  # the variant: FANUC, in joints
 @pytest.fixture
 def sound(workshop):
     """Return the folder of a valid program, and the file of its cell."""
-    _, motion, _, files = written(VARIANT)
+    _, motion, _, files = write_program(VARIANT)
     folder = workshop.folder / "edited"
     folder.mkdir()
     for name, data in files.items():

@@ -69,41 +69,41 @@ class Whole:
         return np.stack([rho - 75.0, rho - 60.0, cone])
 
 
-def check_levels(whole):
+def check_levels(run):
     """Assert that every point is on its cone, the cones are a layer height apart, and points
     between are within the chord error."""
-    moves = whole.point > 0
-    middle = np.roll(whole.places, 1, axis=0)
-    middle = 0.5 * (middle + whole.places)
-    hub = np.argmin(np.abs(whole.places[:, 2][:, None] - [centre for centre, _ in HUBS]), axis=1)
+    moves = run.point > 0
+    middle = np.roll(run.places, 1, axis=0)
+    middle = 0.5 * (middle + run.places)
+    hub = np.argmin(np.abs(run.places[:, 2][:, None] - [centre for centre, _ in HUBS]), axis=1)
     row = np.arange(len(hub))
-    distances, between = whole.away(whole.places)[hub, row], whole.away(middle)[hub, row]
-    level = np.rint(distances / whole.height)
-    assert np.abs(distances - level * whole.height).max() < 1e-6 + WRITTEN
-    assert np.abs(between - level * whole.height)[moves].max() < whole.chord
+    distances, between = run.away(run.places)[hub, row], run.away(middle)[hub, row]
+    level = np.rint(distances / run.height)
+    assert np.abs(distances - level * run.height).max() < 1e-6 + WRITTEN
+    assert np.abs(between - level * run.height)[moves].max() < run.chord
     for k, (_, diameter) in enumerate(HUBS):
         on_hub = hub == k
-        layers = sorted(set(zip(whole.layer[on_hub].tolist(), level[on_hub].tolist(), strict=True)))
+        layers = sorted(set(zip(run.layer[on_hub].tolist(), level[on_hub].tolist(), strict=True)))
         assert [number for _, number in layers] == list(
             range(len(layers))
         )  # each once, from the hub outwards
-        mean = np.array([distances[on_hub & (whole.layer == layer)].mean() for layer, _ in layers])
-        assert np.abs(np.diff(mean) - whole.height).max() < 1e-6
-        tip = np.hypot(*whole.places[on_hub, :2].T).max()
-        assert 0.5 * diameter - whole.height < tip <= 0.5 * diameter + WRITTEN
+        mean = np.array([distances[on_hub & (run.layer == layer)].mean() for layer, _ in layers])
+        assert np.abs(np.diff(mean) - run.height).max() < 1e-6
+        tip = np.hypot(*run.places[on_hub, :2].T).max()
+        assert 0.5 * diameter - run.height < tip <= 0.5 * diameter + WRITTEN
 
 
-def check_order(whole):
+def check_order(run):
     """Assert ring by ring around the axis that no two consecutive beads are on the same blade,
     except beads that a ring has in several sections, and that each blade has the same share of each
     layer."""
-    starts = np.flatnonzero(whole.point == 0)
-    ends = np.append(starts[1:], len(whole.point))
+    starts = np.flatnonzero(run.point == 0)
+    ends = np.append(starts[1:], len(run.point))
     blade = []
     for low, high in zip(starts, ends, strict=True):
-        x, y = whole.places[low:high, :2].mean(axis=0)
+        x, y = run.places[low:high, :2].mean(axis=0)
         blade.append(round(math.degrees(math.atan2(y, x)) / 60.0) % 6)
-    blades, layers = np.array(blade), whole.layer[starts]
+    blades, layers = np.array(blade), run.layer[starts]
     for layer in np.unique(layers):
         layer_blades = blades[layers == layer]
         assert (np.bincount(layer_blades, minlength=6) == len(layer_blades) / 6).all()
@@ -112,18 +112,16 @@ def check_order(whole):
         assert len(turns) % 6 == 0 and len(set(step.tolist())) == 1 and step[0] in (1, 5)
 
 
-def check_outlines(whole):
+def check_outlines(run):
     """Assert that in the first layers of each hub the outermost contours of six blades come last,
     one blade after the other."""
-    hub = np.argmin(np.abs(whole.places[:, 2][:, None] - [centre for centre, _ in HUBS]), axis=1)
+    hub = np.argmin(np.abs(run.places[:, 2][:, None] - [centre for centre, _ in HUBS]), axis=1)
     for k in range(len(HUBS)):
-        for layer in np.unique(whole.layer[hub == k])[:2]:
-            layer_rows = np.flatnonzero(whole.layer == layer)
-            last_bead = whole.bead[layer_rows].max()
+        for layer in np.unique(run.layer[hub == k])[:2]:
+            layer_rows = np.flatnonzero(run.layer == layer)
+            last_bead = run.bead[layer_rows].max()
             means = [
-                whole.places[layer_rows[whole.bead[layer_rows] == last_bead - back], :2].mean(
-                    axis=0
-                )
+                run.places[layer_rows[run.bead[layer_rows] == last_bead - back], :2].mean(axis=0)
                 for back in range(6)
             ]
             turn = [math.atan2(y, x) for x, y in means]
@@ -132,7 +130,7 @@ def check_outlines(whole):
             )
 
 
-def check_program(whole):
+def check_program(run):
     """Assert that the deposit moves of the texts, in the order of the parts, have the positions,
     directions and speeds of waypoints.csv."""
     number = r"=?(-?\d+\.?\d*)"
@@ -141,18 +139,18 @@ def check_program(whole):
         + rf"(?:.* F{number})?"
     )
     stated_moves, feed = [], math.nan
-    for name in sorted(whole.texts):
+    for name in sorted(run.texts):
         if name.endswith(".SPF"):
-            for line in whole.texts[name].splitlines():
+            for line in run.texts[name].splitlines():
                 match = pattern.search(line)
                 if match:
                     feed = float(match[7]) if match[7] else feed
                     stated_moves.append([*map(float, match.groups()[:6]), feed])
-    stated_moves, moves = np.array(stated_moves), whole.point > 0
-    assert len(stated_moves) == moves.sum() > whole.fewest
-    assert np.abs(stated_moves[:, :3] - whole.places[moves]).max() < 6e-6
-    assert np.abs(stated_moves[:, 3:6] - whole.tool[moves]).max() < 1.1e-6
-    np.testing.assert_allclose(stated_moves[:, 6] / 60.0, whole.speed[moves], rtol=1e-4)
+    stated_moves, moves = np.array(stated_moves), run.point > 0
+    assert len(stated_moves) == moves.sum() > run.fewest
+    assert np.abs(stated_moves[:, :3] - run.places[moves]).max() < 6e-6
+    assert np.abs(stated_moves[:, 3:6] - run.tool[moves]).max() < 1.1e-6
+    np.testing.assert_allclose(stated_moves[:, 6] / 60.0, run.speed[moves], rtol=1e-4)
 
 
 @pytest.fixture(

@@ -21,7 +21,7 @@ TOOL = (120.0, 0.0, 200.0, 0.0, 45.0, 0.0)
 
 @pytest.fixture
 def shop(workshop):
-    def with_points(points, tolerance="1 mm"):
+    def write_points(points, tolerance="1 mm"):
         cell = {
             "setup": "tool-on-robot",
             "deposition_point": [900, 0, -100, 0, 0, 0],
@@ -42,7 +42,7 @@ def shop(workshop):
         )
         return workshop
 
-    return with_points
+    return write_points
 
 
 def test_what_is_written_stands_where_it_was_touched(shop):

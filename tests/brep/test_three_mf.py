@@ -40,32 +40,34 @@ def mesh(number, points=CORNERS, faces=FACES, kind="model"):
     )
 
 
-def holder(number, *parts):
-    return f'<object id="{number}"><components>{"".join(parts)}</components></object>'
+def holder(number, *components):
+    return f'<object id="{number}"><components>{"".join(components)}</components></object>'
 
 
-def place_item(tag, number, matrix=None, more=""):
+def place_item(tag, number, matrix=None, attributes=""):
     """Return an item or component moved by (4, 4) for columns."""
     text = (
         ""
         if matrix is None
         else ' transform="' + " ".join(map(repr, matrix[:3].T.ravel().tolist())) + '"'
     )
-    return f'<{tag} objectid="{number}"{text}{more}/>'
+    return f'<{tag} objectid="{number}"{text}{attributes}/>'
 
 
-def model(resources, items, unit="millimeter", more=""):
+def model(resources, items, unit="millimeter", extra=""):
     return (
-        f'<?xml version="1.0" encoding="UTF-8"?><model unit="{unit}" xmlns="{three_mf.CORE}" {more}>'
+        f'<?xml version="1.0" encoding="UTF-8"?><model unit="{unit}" xmlns="{three_mf.CORE}" {extra}>'
         f"<resources>{resources}</resources><build>{items}</build></model>"
     )
 
 
-def write_file(folder, text, name="part.3mf", at=three_mf.MODEL, more=(), relations=None):
+def write_file(
+    folder, text, name="part.3mf", model_path=three_mf.MODEL, other_files=(), relations=None
+):
     path = folder / name
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr(at, text)
-        for file_name, content in dict(more).items():
+        archive.writestr(model_path, text)
+        for file_name, content in dict(other_files).items():
             archive.writestr(file_name, content)
         if relations is not None:
             archive.writestr("_rels/.rels", relations)
@@ -160,13 +162,13 @@ def test_objects_in_further_files_and_a_model_in_another_place(tmp_path):
     text = model(
         holder(1, place_item("component", 5, move, path)),
         place_item("item", 1),
-        more=f'requiredextensions="p" xmlns:p="{PRODUCTION}"',
+        extra=f'requiredextensions="p" xmlns:p="{PRODUCTION}"',
     )
     file = write_file(
         tmp_path,
         text,
-        at="Odd/place.model",
-        more={"3D/Objects/blade.model": second_model},
+        model_path="Odd/place.model",
+        other_files={"3D/Objects/blade.model": second_model},
         relations=RELATIONS.format("Odd/place.model"),
     )
     np.testing.assert_allclose(three_mf.triangles(file)[0], in_place(move), atol=1e-12)
@@ -243,7 +245,7 @@ DEEP = "".join(holder(k + 1, place_item("component", k)) for k in range(1, 2000)
         ),
         (
             model(
-                mesh(1), place_item("item", 1), more='requiredextensions="b" xmlns:b="urn:beams"'
+                mesh(1), place_item("item", 1), extra='requiredextensions="b" xmlns:b="urn:beams"'
             ),
             "UNSUPPORTED_FILE",
             "urn:beams",
@@ -252,7 +254,7 @@ DEEP = "".join(holder(k + 1, place_item("component", k)) for k in range(1, 2000)
             model(
                 mesh(1),
                 place_item("item", 1),
-                more='requiredextensions="s" xmlns:s="urn:securecontent"',
+                extra='requiredextensions="s" xmlns:s="urn:securecontent"',
             ),
             "UNSUPPORTED_FILE",
             "encrypted",
@@ -305,7 +307,7 @@ def test_zips_that_are_none_and_zips_that_grow(tmp_path, monkeypatch):
     with pytest.raises(InputError, match="zip"):
         read_mesh(path)
     with pytest.raises(InputError, match="no model"):
-        read_mesh(write_file(tmp_path, "x", at="readme.txt"))
+        read_mesh(write_file(tmp_path, "x", model_path="readme.txt"))
     archive = write_file(tmp_path, model(mesh(1), place_item("item", 1)))
     content = bytearray(archive.read_bytes())
     offset = content.index(b"PK\x01\x02") + 8
@@ -409,7 +411,7 @@ def test_roles_of_prusaslicer(tmp_path, role, wanted, word, moved_too):
     move = random_move(3) if moved_too else None
     size = 1.0 if move is None else np.linalg.det(move[:3, :3])
     text = model(mesh(1, BOTH, BOTH_FACES), place_item("item", 1, move))
-    volume, notes = volume_and_notes(write_file(tmp_path, text, more={PRUSA: config}))
+    volume, notes = volume_and_notes(write_file(tmp_path, text, other_files={PRUSA: config}))
     assert volume == pytest.approx(wanted * size, rel=1e-5)
     assert len(notes) == (word is not None) and (word is None or word in notes[0])
 
@@ -420,12 +422,12 @@ def test_prefixes_that_prusaslicer_does_not_declare(tmp_path):
     config = prusa((0, 11, {}), (12, 23, {"volume_type": "NegativeVolume"}))
     config = config.replace("</volume>", '<slic3rpe:text text="V"/></volume>')
     text = model(mesh(1, BOTH, BOTH_FACES), place_item("item", 1))
-    volume, _ = volume_and_notes(write_file(tmp_path, text, more={PRUSA: config}))
+    volume, _ = volume_and_notes(write_file(tmp_path, text, other_files={PRUSA: config}))
     assert volume == pytest.approx(13500.0)
 
 
 def test_sliced_files_name_their_program(tmp_path):
-    path = write_file(tmp_path, model("", ""), more={"Metadata/plate_1.gcode": "G1 X1"})
+    path = write_file(tmp_path, model("", ""), other_files={"Metadata/plate_1.gcode": "G1 X1"})
     with pytest.raises(InputError, match=r"G-code \(Metadata/plate_1\.gcode\)"):
         three_mf.content(path)
 
@@ -433,7 +435,7 @@ def test_sliced_files_name_their_program(tmp_path):
 def test_modifiers_of_older_slicers(tmp_path):
     old = prusa((0, 11, {}), (12, 23, {"modifier": "1"}))
     text = model(mesh(1, BOTH, BOTH_FACES), place_item("item", 1))
-    assert volume_and_notes(write_file(tmp_path, text, more={PRUSA: old}))[0] == 27000.0
+    assert volume_and_notes(write_file(tmp_path, text, other_files={PRUSA: old}))[0] == 27000.0
     volumes = (
         '<s:volumes xmlns:s="http://schemas.slic3r.org/3mf/2017/06"><s:volume ts="0" te="11" modifier="0"/>'
         '<s:volume ts="12" te="23" modifier="1"/></s:volumes></mesh>'
@@ -448,7 +450,7 @@ def test_a_negative_volume_cuts_the_item_it_belongs_to_alone(tmp_path):
         mesh(1, BOTH, BOTH_FACES) + mesh(2, BLOCK + [10.0, 0.0, 0.0], CUBE_FACES),
         place_item("item", 1) + place_item("item", 2),
     )
-    volume, _ = volume_and_notes(write_file(tmp_path, text, more={PRUSA: config}))
+    volume, _ = volume_and_notes(write_file(tmp_path, text, other_files={PRUSA: config}))
     assert volume == pytest.approx(13500.0 + 27000.0)
 
 
@@ -472,7 +474,7 @@ def test_a_round_negative_volume_leaves_what_is_outside_of_it(tmp_path):
     points, corners = np.vstack([BLOCK, rod]), np.vstack([CUBE_FACES, faces + 8])
     config = prusa((0, 11, {}), (12, 11 + len(faces), {"volume_type": "NegativeVolume"}))
     text = model(mesh(1, points, corners), place_item("item", 1))
-    volume, _ = volume_and_notes(write_file(tmp_path, text, more={PRUSA: config}))
+    volume, _ = volume_and_notes(write_file(tmp_path, text, other_files={PRUSA: config}))
     area = 0.5 * n * radius**2 * np.sin(2.0 * np.pi / n)
     assert volume == pytest.approx(27000.0 - 30.0 * area, rel=1e-5)
 
@@ -481,7 +483,7 @@ def test_negative_volumes_that_cannot_be_cut_are_refused_by_name(tmp_path, monke
     monkeypatch.setattr(f"{three_mf_roles.__name__}.MAX_TRIANGLES", 20)
     keys = {"name": "the hole", "volume_type": "NegativeVolume"}
     text = model(mesh(1, BOTH, BOTH_FACES), place_item("item", 1))
-    path = write_file(tmp_path, text, more={PRUSA: prusa((0, 11, {}), (12, 23, keys))})
+    path = write_file(tmp_path, text, other_files={PRUSA: prusa((0, 11, {}), (12, 23, keys))})
     with pytest.raises(
         InputError, match=r"'the hole' is a negative volume.*: 24 triangles"
     ) as caught:
@@ -498,7 +500,7 @@ def test_a_negative_volume_that_crosses_itself_is_refused(tmp_path):
     corners = np.vstack([CUBE_FACES, CUBE_FACES + 8, CUBE_FACES + 16])
     keys = {"name": "text", "volume_type": "NegativeVolume"}
     text = model(mesh(1, points, corners), place_item("item", 1))
-    path = write_file(tmp_path, text, more={PRUSA: prusa((0, 11, {}), (12, 35, keys))})
+    path = write_file(tmp_path, text, other_files={PRUSA: prusa((0, 11, {}), (12, 35, keys))})
     with pytest.raises(InputError, match=r"'text' is a negative volume.* no valid result"):
         read_mesh(path)
 
@@ -515,7 +517,7 @@ def test_a_negative_volume_that_crosses_itself_is_refused(tmp_path):
 def test_roles_that_cannot_be_understood_are_refused(tmp_path, config, code):
     text = model(mesh(1, BOTH, BOTH_FACES), place_item("item", 1))
     with pytest.raises(InputError) as caught:
-        read_mesh(write_file(tmp_path, text, more={PRUSA: config}))
+        read_mesh(write_file(tmp_path, text, other_files={PRUSA: config}))
     assert caught.value.code == code
 
 
@@ -524,8 +526,8 @@ def test_files_of_roles_of_other_slicers_are_read(tmp_path, name):
     """The second of two boxes is left out."""
     config = prusa((0, 11, {}), (12, 23, {"volume_type": "SupportBlocker"}))
     text = model(mesh(1, BOTH, BOTH_FACES), place_item("item", 1))
-    expected, _ = volume_and_notes(write_file(tmp_path, text, more={PRUSA: config}))
-    other_file = write_file(tmp_path, text, more={f"Metadata/{name}.config": config})
+    expected, _ = volume_and_notes(write_file(tmp_path, text, other_files={PRUSA: config}))
+    other_file = write_file(tmp_path, text, other_files={f"Metadata/{name}.config": config})
     volume, notes = volume_and_notes(other_file)
     assert volume == pytest.approx(expected) and any("support blocker" in str(n) for n in notes)
 
@@ -555,7 +557,9 @@ def test_roles_of_bambu_studio_and_orca(tmp_path, kind, split, subtype, wanted):
     more_files = {BAMBU: bambu(3, p1="normal_part", p2=subtype)}
     if split:
         more_files["3D/Objects/object_1.model"] = model(meshes, "")
-    assert volume_and_notes(write_file(tmp_path, text, more=more_files))[0] == pytest.approx(wanted)
+    assert volume_and_notes(write_file(tmp_path, text, other_files=more_files))[0] == pytest.approx(
+        wanted
+    )
 
 
 @pytest.mark.parametrize(
@@ -627,11 +631,11 @@ def test_settings_of_a_project_of_cura_are_named(tmp_path):
         "[general]\nname = custom\n[values]\nmold_enabled = {}\nxy_offset = {}\nspeed_print = 40\n"
     )
     text = model(mesh(1), place_item("item", 1))
-    path = write_file(tmp_path, text, more={name: profile.format("True", "0")})
+    path = write_file(tmp_path, text, other_files={name: profile.format("True", "0")})
     volume, notes = volume_and_notes(path)
     assert volume == 1.0 and len(notes) == 1
     assert name in notes[0] and "mold_enabled = True" in notes[0] and "xy_offset" not in notes[0]
-    path = write_file(tmp_path, text, more={name: profile.format("False", "0.0")})
+    path = write_file(tmp_path, text, other_files={name: profile.format("False", "0.0")})
     assert volume_and_notes(path) == (1.0, [])
 
 
@@ -712,7 +716,9 @@ def test_what_changes_no_shape_is_read_past_and_what_is_unknown_is_named(tmp_pat
     text = model(colours + in_mesh(mesh(1), sets) + SLICES, place_item("item", 1))
     assert volume_and_notes(write_file(tmp_path, text)) == (1.0, [])
     odd = model('<x:thing xmlns:x="urn:odd"/>' + mesh(1), place_item("item", 1))
-    volume, notes = volume_and_notes(write_file(tmp_path, odd, more={"Other/shape.dat": "?"}))
+    volume, notes = volume_and_notes(
+        write_file(tmp_path, odd, other_files={"Other/shape.dat": "?"})
+    )
     assert volume == 1.0 and "urn:odd" in notes[0] and "Other/shape.dat" in notes[1]
 
 
@@ -722,7 +728,7 @@ def test_encrypted_content_that_is_not_required_is_refused_as_such(tmp_path):
         '<resourcedatagroup><resourcedata path="/3D/3dmodel.model"/></resourcedatagroup></keystore>'
     )
     with pytest.raises(InputError, match="encrypted"):
-        read_mesh(write_file(tmp_path, "%3McF noise", more={"Secure/keystore.xml": store}))
+        read_mesh(write_file(tmp_path, "%3McF noise", other_files={"Secure/keystore.xml": store}))
 
 
 def test_holes_that_a_slicer_drills_are_refused(tmp_path):
@@ -730,16 +736,19 @@ def test_holes_that_a_slicer_drills_are_refused(tmp_path):
     text = model(mesh(1), place_item("item", 1))
     holes = "drain_holes_format_version=1\nobject_id=1|1 2 3 0 0 1 2 5"
     with pytest.raises(InputError, match="holes drilled by the slicer"):
-        read_mesh(write_file(tmp_path, text, more={name: holes}))
+        read_mesh(write_file(tmp_path, text, other_files={name: holes}))
     assert (
-        volume_and_notes(write_file(tmp_path, text, more={name: holes.split("obj")[0]}))[0] == 1.0
+        volume_and_notes(write_file(tmp_path, text, other_files={name: holes.split("obj")[0]}))[0]
+        == 1.0
     )
 
 
 def test_the_feature_of_a_part_tells_what_was_left_out_of_its_file(tmp_path):
     config = prusa((0, 11, {}), (12, 23, {"name": "tool", "volume_type": "ParameterModifier"}))
     path = write_file(
-        tmp_path, model(mesh(1, BOTH, BOTH_FACES), place_item("item", 1)), more={PRUSA: config}
+        tmp_path,
+        model(mesh(1, BOTH, BOTH_FACES), place_item("item", 1)),
+        other_files={PRUSA: config},
     )
     document = FreeCAD.newDocument("Roles")
     try:
@@ -760,12 +769,12 @@ def test_a_file_of_a_component_has_the_unit_of_the_model(tmp_path, unit, right):
         "</resources><build/></model>"
     )
     outer = model(
-        holder(2, place_item("component", 1, more=' p:path="/3D/inner.model"')),
+        holder(2, place_item("component", 1, attributes=' p:path="/3D/inner.model"')),
         place_item("item", 2),
         "inch",
         f'xmlns:p="{three_mf.PRODUCTION}"',
     )
-    path = write_file(tmp_path, outer, more={"3D/inner.model": inner})
+    path = write_file(tmp_path, outer, other_files={"3D/inner.model": inner})
     if right:
         points, _ = three_mf.triangles(path)
         assert np.ptp(points[:, 0]) == pytest.approx(25.4 * np.ptp(CORNERS[:, 0]))
@@ -793,7 +802,7 @@ def test_a_file_of_a_component_has_the_unit_of_the_model(tmp_path, unit, right):
     ],
 )
 def test_settings_that_are_not_known_are_noted(tmp_path, name, noted):
-    path = write_file(tmp_path, model(mesh(1), place_item("item", 1)), more={name: "{}"})
+    path = write_file(tmp_path, model(mesh(1), place_item("item", 1)), other_files={name: "{}"})
     volume, notes = volume_and_notes(path)
     assert volume == 1.0 and len(notes) == noted
     assert not noted or name in notes[0]
@@ -820,7 +829,9 @@ def test_roles_of_pieces_that_the_model_does_not_have_are_refused(
     tmp_path, objects, built, config, text
 ):
     name = PRUSA if "firstid" in config else BAMBU
-    path = write_file(tmp_path, model(objects, place_item("item", built)), more={name: config})
+    path = write_file(
+        tmp_path, model(objects, place_item("item", built)), other_files={name: config}
+    )
     with pytest.raises(InputError) as refused:
         three_mf.content(path)
     assert refused.value.code == "UNSUPPORTED_FILE"
@@ -831,18 +842,18 @@ def test_two_files_of_different_roles_are_refused(tmp_path):
     roles = prusa((0, 11, {}), NEGATIVE)
     more_files = {PRUSA: roles, "Metadata/SuperSlicer_model.config": roles}
     text = model(mesh(1, BOTH, BOTH_FACES), place_item("item", 1))
-    assert volume_and_notes(write_file(tmp_path, text, more=more_files))[0] == pytest.approx(
+    assert volume_and_notes(write_file(tmp_path, text, other_files=more_files))[0] == pytest.approx(
         13500.0
     )
     more_files[PRUSA] = roles.replace("NegativeVolume", "ModelPart")
     with pytest.raises(InputError, match="different roles"):
-        three_mf.content(write_file(tmp_path, text, more=more_files))
+        three_mf.content(write_file(tmp_path, text, other_files=more_files))
 
 
 def test_a_negative_volume_that_cuts_nothing_is_named(tmp_path):
     text = model(TWO, place_item("item", 1) + place_item("item", 2))
     config = prusa((0, 11, {"volume_type": "NegativeVolume", "name": "tool"}), number=2)
-    volume, notes = volume_and_notes(write_file(tmp_path, text, more={PRUSA: config}))
+    volume, notes = volume_and_notes(write_file(tmp_path, text, other_files={PRUSA: config}))
     assert volume == pytest.approx(27000.0)
     assert len(notes) == 1 and "ignored" in notes[0] and "'tool': negative volume" in notes[0]
 
@@ -856,7 +867,7 @@ def test_objects_on_several_plates_are_noted(tmp_path):
             plate.format(k, 2 * instance.format(k) if k in stands else "") for k in (1, 2, 3)
         )
         more_files = {BAMBU: f"<config>{plates}</config>"}
-        notes = volume_and_notes(write_file(tmp_path, text, more=more_files))[1]
+        notes = volume_and_notes(write_file(tmp_path, text, other_files=more_files))[1]
         assert len(notes) == len(wanted) and all(w in n for w, n in zip(wanted, notes))
 
 
@@ -876,7 +887,7 @@ JSON = (
 def test_settings_of_slicers_that_are_not_applied_are_named(tmp_path, name, text, word):
     model_text = model(mesh(1, BLOCK, CUBE_FACES), place_item("item", 1))
     for value, count in ((0, 0), (1, 1)):
-        path = write_file(tmp_path, model_text, more={name: text.format(value)})
+        path = write_file(tmp_path, model_text, other_files={name: text.format(value)})
         notes = volume_and_notes(path)[1]
         assert len(notes) == count and all(word in note for note in notes)
 
@@ -890,7 +901,7 @@ def test_settings_of_an_object_are_named_or_refused(tmp_path, level):
 
     def path_with(key, value):
         text = config.replace(marker, setting.format(key, value) + marker, 1)
-        return write_file(tmp_path, model_text, more={PRUSA: text})
+        return write_file(tmp_path, model_text, other_files={PRUSA: text})
 
     (note,) = volume_and_notes(path_with("xy_size_compensation", "-0.2"))[1]
     assert "'1': xy_size_compensation = -0.2" in note

@@ -43,7 +43,7 @@ def opened(person):
     return person.panel(NAME)
 
 
-def taken(person):
+def confirm_panel(person):
     person.press("Ok")
     person.panel_closed()
 
@@ -69,13 +69,13 @@ def test_wires_are_written_where_the_panel_says(person, job, tmp_path):
     assert not folder.exists()
     folder.mkdir()
     person.screenshot("export_path")
-    taken(person)
+    confirm_panel(person)
     assert len(Part.read(path).Edges) == api.result(job).bead_count
     panel = opened(person)
     person.choose(panel, "Kind", "DXF file of polylines")
     assert person.field(panel, "File").text() == str(folder / f"{job.Label}.dxf")
     assert not person.field(panel, "Tolerance").isVisible()
-    taken(person)
+    confirm_panel(person)
     assert sorted(os.listdir(folder)) == sorted([f"{job.Label}.dxf", "mes fils é.step"])
 
 
@@ -93,7 +93,7 @@ def test_waypoints_are_a_table_of_all_points_and_axes(person, job, tmp_path):
     person.choose(panel, "Kind", "CSV table of waypoints")
     assert not person.field(panel, "Rapids").isVisible()
     person.type(panel, "File", str(tmp_path / "points.csv"))
-    taken(person)
+    confirm_panel(person)
     with (tmp_path / "points.csv").open(encoding="ascii") as stream:
         rows = list(csv.DictReader(stream))
     motion = api.result(path).motion
@@ -111,7 +111,7 @@ def test_a_joint_path_is_a_trajectory_of_ros(person, job, tmp_path):
     panel = opened(person)
     person.choose(panel, "Kind", "JSON file of a ROS joint trajectory")
     person.type(panel, "File", str(tmp_path / "path.json"))
-    taken(person)
+    confirm_panel(person)
     trajectory = json.loads((tmp_path / "path.json").read_text(encoding="utf-8"))
     motion = api.result(path).motion
     positions = [trajectory["points"][number]["positions"] for number in (0, -1)]
@@ -154,7 +154,7 @@ def test_the_report_of_a_joint_path_is_a_page(person, job, tmp_path):
     )
     file.parent.mkdir()
     person.screenshot("export_report")
-    taken(person)
+    confirm_panel(person)
     page = file.read_text(encoding="utf-8")
     assert [entry.name for entry in file.parent.iterdir()] == ["page.html"]
     assert (
@@ -229,7 +229,7 @@ def test_cam_path_and_trajectory_are_objects_in_one_step(person, job):
         panel = opened(person)
         person.choose(panel, "Kind", kind)
         assert not person.field(panel, "File").isVisible()
-        taken(person)
+        confirm_panel(person)
         assert doc.Objects[-1].TypeId == type_name and len(doc.Objects) == object_count + 1
         assert doc.UndoCount == steps + 1
         doc.undo()

@@ -77,8 +77,8 @@ def test_rates_reach_what_the_report_tells(dome):
 
 def test_limits_that_no_machine_file_tells_are_said_to_be_unknown(dome):
     source, _ = dome
-    known = pictures.picture("speeds", source).charts
-    assert all(np.isfinite(chart.limits).all() and not chart.unlimited for chart in known)
+    known_charts = pictures.picture("speeds", source).charts
+    assert all(np.isfinite(chart.limits).all() and not chart.unlimited for chart in known_charts)
     for name, word in (("accelerations", "max_acceleration"), ("jerks", "max_jerk")):
         charts = pictures.picture(name, source).charts
         assert all(np.isinf(chart.limits).all() and word in chart.unlimited for chart in charts)

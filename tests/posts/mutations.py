@@ -441,8 +441,8 @@ STAUBLI: dict[str, tuple[str, Change]] = {
 _UR_N = r"-?\d+\.\d{7}"
 _UR_JOINT = rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{0,5}}\]\)?, a=1\.4)"
 _UR_PLACE, _UR_ANGLE = (
-    rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{{some}}}\]\), (?:a=1\.2|\[))"
-    for some in ("3,5", "0,2")
+    rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{{number_text}}}\]\), (?:a=1\.2|\[))"
+    for number_text in ("3,5", "0,2")
 )
 _UR_MOVE, _UR_OUT, _UR_SLEEP, _UR_WHILE, _UR_CALL = (
     rf"^ +{line}\n"

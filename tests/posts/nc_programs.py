@@ -108,7 +108,7 @@ def random_program(seed, motion="joint", continuous=False, names=NAMES, wire=Fal
     )
 
 
-def with_options(program_, **options):
+def set_options(program_, **options):
     """Return the program with other options of five-axis machines."""
     return dataclasses.replace(program_, nc=NcOptions(**options))
 

@@ -303,7 +303,7 @@ def planned(name, lift=LIFT, retreat=0.0, ramps=()):
 
 
 @functools.cache
-def written(variant, max_points=2000, lift=LIFT, retreat=0.0, ramps=()):
+def write_program(variant, max_points=2000, lift=LIFT, retreat=0.0, ramps=()):
     """Return the cell, the motion, the program and its files."""
     post, kind, feed, name = variant
     cell, beads, motion = planned(name, lift, retreat, ramps)

@@ -381,7 +381,7 @@ def approach_linearly(rapid):
     ]
 
 
-def with_process_data(source, name, **options):
+def add_process_data(source, name, **options):
     """Return the program with process data on its beads. arc, weave: numbers of the data; ahead:
     the lead; wire: wire per mm."""
     blocks = []
@@ -405,11 +405,11 @@ def with_process_data(source, name, **options):
 
 TOOL = put_tool_on_robot(HELD_PART)
 GOLDENS = {
-    "arc": with_process_data(add_positioner(HELD_PART), "arc", arc=5, weave=2),
-    "arc-held": with_process_data(HELD_PART, "archeld", arc=5),
-    "ahead": with_process_data(TOOL, "ahead", ahead=0.05),
-    "ahead-joint": with_process_data(JOINT, "aheadj", ahead=0.0),
-    "wire": with_process_data(TOOL, "wire", wire=3.5, ahead=0.02),
+    "arc": add_process_data(add_positioner(HELD_PART), "arc", arc=5, weave=2),
+    "arc-held": add_process_data(HELD_PART, "archeld", arc=5),
+    "ahead": add_process_data(TOOL, "ahead", ahead=0.05),
+    "ahead-joint": add_process_data(JOINT, "aheadj", ahead=0.0),
+    "wire": add_process_data(TOOL, "wire", wire=3.5, ahead=0.02),
 }
 
 
@@ -509,7 +509,7 @@ def ending_at(source, speed):
 def test_rounding_moves_no_switch_by_more_than_half_a_millisecond_and_slower_moves_are_refused(of):
     for speed in (0.1, 0.123, 0.7891, 7.7777):
         for lead in (0.0007, 0.0123, 0.1, 0.15):
-            program = ending_at(with_process_data(of, "ahead", ahead=lead), speed)
+            program = ending_at(add_process_data(of, "ahead", ahead=lead), speed)
             written_speed = np.round(speed, 3) if of is TOOL else speed
             (early,) = {
                 event.before / written_speed
@@ -517,13 +517,11 @@ def test_rounding_moves_no_switch_by_more_than_half_a_millisecond_and_slower_mov
                 if event.kind == "off"
             }
             assert abs(early - lead) <= MOST_DIGITS + 1e-12
-    slow = ending_at(with_process_data(of, "ahead", ahead=0.02), 0.09)
+    slow = ending_at(add_process_data(of, "ahead", ahead=0.02), 0.09)
     with pytest.raises(InputError) as error:
         abb.write(slow)
     assert error.value.code == "TRIGGER" and "0.09 mm/s" in error.value.message
-    abb.write(
-        ending_at(with_process_data(of, "ahead", ahead=0.0), 0.09)
-    )  # at its end, at any speed
+    abb.write(ending_at(add_process_data(of, "ahead", ahead=0.0), 0.09))  # at its end, at any speed
 
 
 def test_a_way_is_as_long_ahead_as_the_tip_takes_for_it_on_that_very_move():
@@ -560,21 +558,21 @@ def many_speeds(block):
 
 def test_writing_refuses_it_too_and_weaves_and_speeds_beyond_what_there_is():
     for wrong, code in (
-        (with_process_data(JOINT, "arc", arc=3), "SCHEDULE"),
-        (with_process_data(TOOL, "weave", weave=2), "WEAVE"),
-        (with_process_data(HELD_PART, "weave", arc=3, weave=2), "WEAVE"),
-        (with_process_data(TOOL, "weave", arc=3, weave=256), "WEAVE"),
-        (with_process_data(JOINT, "wire", wire=2.0), "NO_WIRE_OUTPUT"),
-        (with_process_data(HELD_PART, "wire", wire=2.0), "NO_WIRE_OUTPUT"),
-        (with_process_data(add_positioner(HELD_PART), "wire", wire=2.0), "NO_WIRE_OUTPUT"),
-        (with_process_data(TOOL, "wire", arc=3, wire=2.0), "NO_WIRE_OUTPUT"),
-        (with_process_data(TOOL, "seam", arc=10000), "SCHEDULE"),
-        (with_process_data(TOOL, "ahead", ahead=0.51), "TRIGGER_LEAD"),
+        (add_process_data(JOINT, "arc", arc=3), "SCHEDULE"),
+        (add_process_data(TOOL, "weave", weave=2), "WEAVE"),
+        (add_process_data(HELD_PART, "weave", arc=3, weave=2), "WEAVE"),
+        (add_process_data(TOOL, "weave", arc=3, weave=256), "WEAVE"),
+        (add_process_data(JOINT, "wire", wire=2.0), "NO_WIRE_OUTPUT"),
+        (add_process_data(HELD_PART, "wire", wire=2.0), "NO_WIRE_OUTPUT"),
+        (add_process_data(add_positioner(HELD_PART), "wire", wire=2.0), "NO_WIRE_OUTPUT"),
+        (add_process_data(TOOL, "wire", arc=3, wire=2.0), "NO_WIRE_OUTPUT"),
+        (add_process_data(TOOL, "seam", arc=10000), "SCHEDULE"),
+        (add_process_data(TOOL, "ahead", ahead=0.51), "TRIGGER_LEAD"),
     ):
         with pytest.raises(InputError) as error:
             abb.write(wrong)
         assert error.value.code == code, code
-    blocks = tuple(many_speeds(block) for block in with_process_data(TOOL, "many", arc=3).blocks)
+    blocks = tuple(many_speeds(block) for block in add_process_data(TOOL, "many", arc=3).blocks)
     with pytest.raises(InputError) as error:
         abb.write(dataclasses.replace(TOOL, blocks=blocks, max_points=5000))
     assert error.value.code == "MOVE_SPEED" and "500" in error.value.message

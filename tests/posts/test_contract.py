@@ -15,7 +15,15 @@ from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.posts import planned_jobs
 from tests.posts.driven import Drive, bead_body, depth_in_hub, depths_in_nozzle
-from tests.posts.planned_jobs import CHORD_ERROR, HEIGHT, SETUPS, SPANNING, WAYS, WIDTH, written
+from tests.posts.planned_jobs import (
+    CHORD_ERROR,
+    HEIGHT,
+    SETUPS,
+    SPANNING,
+    WAYS,
+    WIDTH,
+    write_program,
+)
 
 pytestmark = pytest.mark.any_version
 
@@ -58,7 +66,7 @@ def contacts(variant, files, lift=planned_jobs.LIFT):
     """Return (row, mm) for the rows of a text on which the nozzle gets into hub, deposit or
     platform, and the drive. Deposit that is in the nozzle while it prints an end of a bead, at most
     as high over the tip as the bead, may stay in it on the retract and approach at that end."""
-    cell, motion, _, _ = written(variant, lift=lift)
+    cell, motion, _, _ = write_program(variant, lift=lift)
     setup, rows = SETUPS[variant[3]], np.flatnonzero(motion.moves)
     drive = Drive(cell, catalogue.load(variant[0]).read(files), motion.joints[rows[0]])
     laying, nozzle, contact_rows = drive.read.deposit, cell.nozzle, []
@@ -94,7 +102,7 @@ def contacts(variant, files, lift=planned_jobs.LIFT):
 @pytest.mark.always(*SPANNING)
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
 def test_the_text_drives_the_way_that_was_looked_at(way):
-    cell, motion, _, files = written(way)
+    cell, motion, _, files = write_program(way)
     contact_rows, drive = contacts(way, files)
     assert contact_rows == []
     rows = np.flatnonzero(motion.moves)
@@ -123,7 +131,7 @@ def test_the_text_drives_the_way_that_was_looked_at(way):
 def test_travels_have_something_to_pass(way):
     """The straight path of the tip leads through the hub on most sides, so the driven travels are
     not free by chance."""
-    _, motion, _, _ = written(way)
+    _, motion, _, _ = write_program(way)
     rows = np.flatnonzero(motion.moves)
     lifted = np.flatnonzero(motion.role[rows] == 2)
     assert (
@@ -135,7 +143,7 @@ def test_travels_have_something_to_pass(way):
 
 @pytest.mark.parametrize("way", STACKED, ids=" ".join)
 def test_a_retract_distance_of_nothing_leads_over_what_was_just_laid(way):
-    files = written(way, lift=0.0)[3]
+    files = write_program(way, lift=0.0)[3]
     contact_rows, drive = contacts(way, files, 0.0)
     assert contact_rows == []
     assert (~drive.read.deposit).sum() >= 4  # a retract exists even so
@@ -170,9 +178,9 @@ def test_the_drive_finds_what_a_broken_check_lets_pass(broken, monkeypatch):
                 "find_collisions",
                 lambda self, moves: np.zeros(len(moves.deposited), dtype=bool),
             )
-        planned_jobs.planned.cache_clear(), planned_jobs.written.cache_clear()
-        contact_rows, _ = contacts(variant, written(variant, lift=0.0)[3], 0.0)
-    planned_jobs.planned.cache_clear(), planned_jobs.written.cache_clear()
+        planned_jobs.planned.cache_clear(), planned_jobs.write_program.cache_clear()
+        contact_rows, _ = contacts(variant, write_program(variant, lift=0.0)[3], 0.0)
+    planned_jobs.planned.cache_clear(), planned_jobs.write_program.cache_clear()
     assert contact_rows
 
 
@@ -186,7 +194,7 @@ def old_text(files):
 
 
 def test_straight_rapids_with_rounded_corners_are_found_by_the_drive_and_refused():
-    cell, motion, program, files = written(CARTESIAN)
+    cell, motion, program, files = write_program(CARTESIAN)
     old = old_text(files)
     contact_rows, drive = contacts(CARTESIAN, old)
     assert (
@@ -203,7 +211,7 @@ def test_straight_rapids_with_rounded_corners_are_found_by_the_drive_and_refused
 def test_the_size_that_is_told_before_planning_is_about_that_of_the_program(way):
     """The size estimate before planning is near that of the program without its head, which
     dominates such a short program."""
-    _, _, program, files = written(way)
+    _, _, program, files = write_program(way)
     moves = sum(len(run) for run in program.moves)
     size = sum(map(len, files.values()))
     estimate = moves * catalogue.controller(way[0]).point_bytes

@@ -11,7 +11,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.posts import catalogue
 from freecad_am.read_back import followed
 from tests.posts.driven import Drive
-from tests.posts.planned_jobs import SPANNING, WAYS, written
+from tests.posts.planned_jobs import SPANNING, WAYS, write_program
 
 pytestmark = pytest.mark.any_version
 
@@ -27,7 +27,7 @@ def strip_plan(program):
 @pytest.mark.parametrize("way", WAYS, ids=[" ".join(variant) for variant in WAYS])
 @pytest.mark.always(*SPANNING)
 def test_the_plan_is_found_again_in_the_text(way):
-    cell, planned, program, files = written(way)
+    cell, planned, program, files = write_program(way)
     readback = catalogue.load(way[0]).read(files)
     motion = followed.drive(cell, strip_plan(program), readback)
     for column in ("deposit", "layer", "bead", "point"):
@@ -54,7 +54,7 @@ def test_the_plan_is_found_again_in_the_text(way):
 
 
 def test_the_deposit_is_in_beads_as_long_as_planned():
-    cell, planned, program, files = written(WAYS[0])
+    cell, planned, program, files = write_program(WAYS[0])
     motion = followed.drive(cell, strip_plan(program), catalogue.load("fanuc").read(files))
     beads = followed.beads(motion)
     assert sum(len(bead.points) for bead in beads) == motion.deposit.sum()
@@ -63,7 +63,7 @@ def test_the_deposit_is_in_beads_as_long_as_planned():
 
 
 def test_a_text_that_begins_with_a_position_needs_a_configuration():
-    cell, _, program, files = written(
+    cell, _, program, files = write_program(
         next(variant for variant in WAYS if variant[:2] == ("ur", "cartesian"))
     )
     readback = catalogue.load("ur").read(files)

@@ -11,7 +11,7 @@ import pytest
 from freecad_am.posts.linuxcnc import post as linuxcnc
 from freecad_am.posts.siemens import post as siemens
 from tests.posts.interpreters import nc_python, rs274, run_nc, run_rs274
-from tests.posts.nc_programs import deposit_of, random_program, with_options
+from tests.posts.nc_programs import deposit_of, random_program, set_options
 
 linuxcnc_is_here = pytest.mark.skipif(
     rs274() is None, reason="no rs274 of LinuxCNC: `./freecad-am test` fetches it"
@@ -64,7 +64,7 @@ def test_linuxcnc_goes_where_it_should(tmp_path, seed, motion, feed):
     source = random_program(
         seed, motion, seed % 3 == 0, names, wire=seed % 2 == 0, deposit_output=4
     )
-    source = with_options(source, path_feed=feed, wire_output=7, wire_gain=2.5)
+    source = set_options(source, path_feed=feed, wire_output=7, wire_gain=2.5)
     moves, complaints = run_rs274(tmp_path, linuxcnc.write(source), "random.ngc", 250.0)
     assert not complaints and not any(move["rapid"] for move in moves)
     positions = np.array([move["at"] for move in moves])
@@ -126,7 +126,7 @@ def test_linuxcnc_refuses_what_is_wrong(tmp_path, damage):
 def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
     continuous = seed % 2 == 1
     source = random_program(seed, motion, continuous, wire=seed % 2 == 0, deposit_output=4)
-    source = with_options(source, path_feed=feed, wire_output=7, wire_gain=2.5)
+    source = set_options(source, path_feed=feed, wire_output=7, wire_gain=2.5)
     files = siemens.write(source)
     rows, positions, names = {}, [], set()
     order = sorted(files)  # parts are called in the order of their names

@@ -10,7 +10,7 @@ import pytest
 from freecad_am.core.issues import InputError
 from freecad_am.posts import catalogue
 from freecad_am.posts.catalogue import lines_of
-from tests.posts.planned_jobs import SPANNING, WAYS, written
+from tests.posts.planned_jobs import SPANNING, WAYS, write_program
 
 pytestmark = pytest.mark.any_version
 
@@ -20,8 +20,8 @@ INDEX = re.compile(rb"(?<=P\[)\d+|(?<=MOV[JL] C)\d+")
 
 def targets_of(readback):
     """Return (n, k) all that a text states about the targets of its moves."""
-    places = (readback.joints, readback.position, readback.direction)
-    columns = [column.reshape(len(column), -1) for column in places if column is not None]
+    target_arrays = (readback.joints, readback.position, readback.direction)
+    columns = [column.reshape(len(column), -1) for column in target_arrays if column is not None]
     return np.nan_to_num(np.concatenate(columns, axis=1), nan=-1.0)
 
 
@@ -53,7 +53,7 @@ def another_end(post, files, name, number, k):
 @pytest.mark.always(*SPANNING)
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
 def test_the_line_of_a_move_tells_that_move_and_no_other(way):
-    _, motion, _, files = written(way)
+    _, motion, _, files = write_program(way)
     post = catalogue.load(way[0])
     readback, lines = post.read(files), lines_of(way[0], files)
     assert len(lines) == len(readback.deposit) == motion.moves.sum() > 20

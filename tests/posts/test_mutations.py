@@ -12,7 +12,7 @@ from freecad_am.core.issues import ERROR, InputError
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
 from tests.posts.mutations import KINDS, SMALLEST_REJECTED, mutated, step_number
-from tests.posts.planned_jobs import CHORD_ERROR, SPANNING, WAYS, written
+from tests.posts.planned_jobs import CHORD_ERROR, SPANNING, WAYS, write_program
 
 pytestmark = pytest.mark.any_version
 
@@ -22,7 +22,7 @@ PARTS = 40  # points: the same job in parts
 
 def error_codes(variant, files, max_points):
     """Return the codes of the errors in the files of a job."""
-    cell, motion, program, _ = written(variant, max_points)
+    cell, motion, program, _ = write_program(variant, max_points)
     try:
         result = verify(cell, motion, program, files, catalogue.load(variant[0]), CHORD_ERROR)
     except InputError as error:
@@ -36,14 +36,14 @@ def damage_text(variant, kind, draw):
     pattern, change = KINDS[variant[0]][kind]
     rng = np.random.default_rng([zlib.crc32(repr((variant, kind)).encode()), draw])
     max_points = PARTS if draw % 2 or "part" in kind else 2000
-    return mutated(written(variant, max_points)[3], pattern, change, rng), max_points
+    return mutated(write_program(variant, max_points)[3], pattern, change, rng), max_points
 
 
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
 @pytest.mark.parametrize("most", [2000, PARTS])
 def test_what_is_written_passes(way, most):
-    assert error_codes(way, written(way, most)[3], most) == set()
-    files = written(way, most)[3]
+    assert error_codes(way, write_program(way, most)[3], most) == set()
+    files = write_program(way, most)[3]
     in_parts = (
         files["job.script"].count(b"  def job") if way[0] == "ur" else len(files)
     )  # functions in one file
@@ -61,10 +61,10 @@ def test_what_is_damaged_is_refused(way, first):
         files, max_points = damage_text(way, kind, draw)
         if files is None:
             continue
-        assert files != written(way, max_points)[3]
+        assert files != write_program(way, max_points)[3]
         kinds_done.add(kind)
         if not error_codes(way, files, max_points):
-            intact = written(way, max_points)[3]
+            intact = write_program(way, max_points)[3]
             for name in files:
                 lines = zip(intact[name].decode().split("\n"), files[name].decode().split("\n"))
                 passed += [(kind, draw, name, old, new) for old, new in lines if old != new][:1]
@@ -79,7 +79,7 @@ def test_the_least_change_of_a_number_that_is_more_than_its_digits_explain_is_re
     for kind, (pattern, steps) in SMALLEST_REJECTED[way[0]].items():
         rng = np.random.default_rng(zlib.crc32(repr((way, kind)).encode()))
         for _ in range(DRAWS):
-            files = mutated(written(way)[3], pattern, step_number(steps), rng)
+            files = mutated(write_program(way)[3], pattern, step_number(steps), rng)
             attempts += files is not None
             passed += [kind] if files is not None and not error_codes(way, files, 2000) else []
     assert not passed and attempts >= 3 * DRAWS
@@ -91,7 +91,7 @@ def test_a_share_of_the_axes_speeds_is_known_as_well_with_axes_that_slide_and_tu
 ):
     """The track's rounding and speed are in mm: neither counts for the revolute axes."""
     variant = ("yaskawa", "joint", "time", name)
-    ((file, content),) = written(variant)[3].items()
+    ((file, content),) = write_program(variant)[3].items()
     text = content.decode()
     shares = list(re.finditer(r"VJ=(\d+\.\d\d)", text))
     assert len(shares) > 40

@@ -13,7 +13,7 @@ from freecad_am.core.program import Call, DepositOff, DepositOn, LayerStart, Mov
 from freecad_am.posts import catalogue, nc_numbers
 from freecad_am.posts.linuxcnc import post as linuxcnc
 from freecad_am.posts.siemens import post as siemens
-from tests.posts.nc_programs import deposit_of, moves, program, random_program, with_options
+from tests.posts.nc_programs import deposit_of, moves, program, random_program, set_options
 
 POSTS = (siemens, linuxcnc)
 
@@ -72,7 +72,7 @@ def as_arrays(block):
 
 TIP = program(*map(as_arrays, [*tip_bead(0), *tip_bead(1)]), name="tip", motion="cartesian", max_points=5, user_frame=2,
               continuous=(False,) * 4 + (True,))  # fmt: skip
-GOLDENS = {"joint": JOINT, "path": with_options(JOINT, path_feed=True), "tip": TIP}
+GOLDENS = {"joint": JOINT, "path": set_options(JOINT, path_feed=True), "tip": TIP}
 
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
@@ -88,7 +88,7 @@ def test_golden_programs_to_the_byte(root, name, post):
     ("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)]
 )
 def test_random_programs_come_back(post, seed, motion, feed):
-    source = with_options(random_program(seed, motion, seed % 2 == 1), path_feed=feed)
+    source = set_options(random_program(seed, motion, seed % 2 == 1), path_feed=feed)
     files = post.write(source)
     assert files == post.write(source)  # the same bytes
     readback = post.read(files)
@@ -176,7 +176,7 @@ def test_only_speeds_are_compressed():
         ("cartesian", False, True),
         ("cartesian", False, False),
     ):
-        source = with_options(
+        source = set_options(
             random_program(3, motion, max_points=10**4), path_feed=feed, compress=compress
         )
         written = text(siemens.write(source))
@@ -185,7 +185,7 @@ def test_only_speeds_are_compressed():
             assert re.fullmatch(
                 r"(?:N\d+ (?:G9 )?G1 X\S+ Y\S+ Z\S+ A3=\S+ B3=\S+ C3=\S+ F\S+\n)+N\d+ $", inside
             )
-    line = with_options(JOINT, path_feed=True)
+    line = set_options(JOINT, path_feed=True)
     assert text(siemens.write(line)).count("COMPCAD") == 1  # the ring states times, the line speeds
     assert "COMPCAD" not in text(
         siemens.write(dataclasses.replace(line, nc=dataclasses.replace(line.nc, compress=False)))
@@ -198,7 +198,7 @@ def test_path_feeds_are_speeds_of_the_linear_axes():
     step = math.hypot(1.0, 0.25)
     for post in POSTS:
         feeds = re.findall(
-            r"G1 X1[34].* F([\d.]+)\n", text(post.write(with_options(JOINT, path_feed=True)))
+            r"G1 X1[34].* F([\d.]+)\n", text(post.write(set_options(JOINT, path_feed=True)))
         )
         # two moves of the bead, then a rapid of one second
         assert [float(feed) for feed in feeds] == pytest.approx(
@@ -257,16 +257,16 @@ def test_times_and_speeds_that_cannot_be_written(post):
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
 def test_words_that_switch_the_deposit(post):
-    source = with_options(random_program(2, max_points=10**4), deposit_on="M7", deposit_off="M9")
+    source = set_options(random_program(2, max_points=10**4), deposit_on="M7", deposit_off="M9")
     written = text(post.write(source))
     assert "M7\n" in written and "M9\n" in written and not re.search(r"H\d+=|M6[45]", written)
     assert post.read(post.write(source)).deposit.tolist() == deposit_of(source)
     for on, off in (("M7", ""), ("", "M9"), ("M7", "M7"), ("on", "off"), ("M7 M8", "M9")):
-        refusal(post, with_options(source, deposit_on=on, deposit_off=off), code="DEPOSIT_WORD")
+        refusal(post, set_options(source, deposit_on=on, deposit_off=off), code="DEPOSIT_WORD")
     for word in ("M30", "M02", "M6"):
-        changed = with_options(source, deposit_on=word, deposit_off="M9")
+        changed = set_options(source, deposit_on=word, deposit_off="M9")
         refusal(post, changed, code="DEPOSIT_WORD", where="program.nc.deposit_on")
-    changed = with_options(source, deposit_on="H2=1", deposit_off="H2=0")
+    changed = set_options(source, deposit_on="H2=1", deposit_off="H2=0")
     if post is linuxcnc:
         refusal(post, changed, code="DEPOSIT_WORD")
     else:
@@ -337,8 +337,8 @@ def test_a_bead_longer_than_a_part_is_a_part_by_itself(post):
     ("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)]
 )
 def test_the_speed_of_the_wire_comes_back(post, seed, motion, feed):
-    plain = with_options(random_program(seed, motion), path_feed=feed)
-    source = with_options(
+    plain = set_options(random_program(seed, motion), path_feed=feed)
+    source = set_options(
         random_program(seed, motion, wire=True), path_feed=feed, wire_output=3, wire_gain=400.0
     )
     files = post.write(source)
@@ -382,13 +382,13 @@ def test_the_speed_of_the_wire_comes_back(post, seed, motion, feed):
 def test_the_wire_of_a_dry_run_and_of_outputs_that_are_not_there(post):
     source = random_program(5, wire=True, max_points=10**4)
     last_output = {siemens: 8, linuxcnc: 64}[post]
-    post.write(with_options(source, wire_output=last_output))
+    post.write(set_options(source, wire_output=last_output))
     where = "program.nc.wire_output"
     assert f"1 to {last_output}" in refusal(
-        post, with_options(source, wire_output=last_output + 1), code="WIRE_OUTPUT", where=where
+        post, set_options(source, wire_output=last_output + 1), code="WIRE_OUTPUT", where=where
     )
     still = text(
-        post.write(with_options(random_program(5, max_points=10**4), wire_output=last_output + 1))
+        post.write(set_options(random_program(5, max_points=10**4), wire_output=last_output + 1))
     )
     assert "OUTA" not in still and not re.search(r"M6[78]", still)
     dry = text(
@@ -418,9 +418,9 @@ def test_what_one_controller_alone_cannot_say():
         linuxcnc, tilted, code="UNSUPPORTED_FRAME", where="program.origin"
     )
     siemens.write(tilted)
-    fixed = with_options(TIP, switch_kinematics=False)
+    fixed = set_options(TIP, switch_kinematics=False)
     refusal(linuxcnc, fixed, code="NO_TIP_KINEMATICS", where="program.nc.switch_kinematics")
-    assert "M42" not in text(linuxcnc.write(with_options(JOINT, switch_kinematics=False)))
+    assert "M42" not in text(linuxcnc.write(set_options(JOINT, switch_kinematics=False)))
     turns = [[0.0, 0.0, 0.0, 0.0, angle] for angle in (0.0, 179.0, 359.5)]
     continuous = program(moves("rapid", turns), continuous=(False,) * 4 + (True,))
     assert "C turns 180.5 deg" in refusal(

@@ -22,7 +22,7 @@ from tests.posts.planned_jobs import (
     SPEED,
     WAYS,
     wanted_speeds,
-    written,
+    write_program,
 )
 from tests.programs import build
 
@@ -33,7 +33,7 @@ FASTER = 1.05  # more than the coarsest step of a text, a hundredth of VJ, expla
 
 def verify_at_speed(variant, speed):
     """Return the error codes of a text with these speeds (n,), verified against the planned job."""
-    cell, motion, program, _ = written(variant)
+    cell, motion, program, _ = write_program(variant)
     moves = motion.deposit & (motion.point > 0)
     duration = np.where(moves, motion.duration * motion.speed / speed, motion.duration)
     post, kind, feed, _ = variant
@@ -81,7 +81,7 @@ def speeds(motion):
 
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
 def test_another_speed_at_a_start_or_an_end_is_refused(way):
-    motion = written(way)[1]
+    motion = write_program(way)[1]
     expected, moves = speeds(motion), motion.deposit & (motion.point > 0)
     np.testing.assert_allclose(motion.speed[moves], expected[moves], rtol=1e-9)
     assert verify_at_speed(way, motion.speed) == set()
@@ -108,7 +108,7 @@ LINUXCNC = [variant for variant in WAYS if variant[0] == "linuxcnc"]
 
 @functools.cache
 def plan_schedules(variant):
-    cell, motion, _, _ = written(variant)
+    cell, motion, _, _ = write_program(variant)
     post, kind, feed, _ = variant
     schedule = ScheduleParameters(output=20)
     parameters = ProgramParameters(

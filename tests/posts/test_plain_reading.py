@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.posts.planned_jobs import SETUPS, SIDES, WAYS, _bead, wanted_speeds, written
+from tests.posts.planned_jobs import SETUPS, SIDES, WAYS, _bead, wanted_speeds, write_program
 
 pytestmark = pytest.mark.any_version
 
@@ -124,7 +124,7 @@ def tips(variant, moves):
     """Return (n, 3) where the moves end, in part coordinates."""
     setup = SETUPS[variant[3]].cell
     machine = json.loads((MACHINES / f"{setup.machine}.json").read_text(encoding="utf-8"))
-    cell = written(variant)[0]
+    cell = write_program(variant)[0]
     rows = []
     for values in moves:
         if len(values) == 6:
@@ -160,7 +160,7 @@ def tips(variant, moves):
     ids=" ".join,
 )
 def test_the_tip_runs_along_the_beads_at_their_speed_and_stops_on_rapids(way):
-    post, files = way[0], written(way)[3]
+    post, files = way[0], write_program(way)[3]
     on, moves, move_data = False, [], []
     for line, values, straight, time, speed, stop in READERS[post](lines_of(files)):
         switched = re.search(SIDES_OF[post], line)

@@ -12,7 +12,15 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from tests.posts.planned_jobs import PROCESS, PULSES, SETUPS, SIDES, WAYS, wanted_speeds, written
+from tests.posts.planned_jobs import (
+    PROCESS,
+    PULSES,
+    SETUPS,
+    SIDES,
+    WAYS,
+    wanted_speeds,
+    write_program,
+)
 from tests.posts.test_plain_reading import MACHINES, MAX_LENGTH_ERROR, SPEED_SHARE, pose, rotation
 
 pytestmark = pytest.mark.any_version
@@ -262,7 +270,7 @@ def tip(cell, setup, machine, move):
 def read(variant):
     setup = SETUPS[variant[3]].cell
     machine = json.loads((MACHINES / f"{setup.machine}.json").read_text(encoding="utf-8"))
-    cell, motion, _, files = written(variant)
+    cell, motion, _, files = write_program(variant)
     if variant[0] in NC:
         names = [joint["name"][-1].upper() for joint in machine["joints"]]
         moves = NC[variant[0]](files, names)
@@ -337,7 +345,7 @@ def test_every_move_comes_to_its_waypoint_within_limits_and_speeds(way):
         previous = (motion.position[row], move.joints)
     stated_kinds = "".join(
         content.decode("utf-8-sig")
-        for name, content in written(way)[3].items()
+        for name, content in write_program(way)[3].items()
         if not name.endswith("stop.pgx")
     )
     dwells = sorted(

@@ -21,7 +21,7 @@ from tests.posts.planned_jobs import (
     SPANNING,
     SPEED,
     WAYS,
-    written,
+    write_program,
 )
 from tests.programs import build
 
@@ -34,7 +34,7 @@ USUAL_VARIANTS = ("fanuc cartesian time fanuc tool-on-robot", "linuxcnc joint pa
 
 def find_errors(variant, speed):
     """Return the error codes of a text with these speeds (n,), verified against the planned job."""
-    cell, motion, program, _ = written(variant, ramps=RAMPS)
+    cell, motion, program, _ = write_program(variant, ramps=RAMPS)
     moves = motion.deposit & (motion.point > 0)
     duration = np.where(moves, motion.duration * motion.speed / speed, motion.duration)
     post, kind, feed, _ = variant
@@ -87,7 +87,7 @@ def ramp_speed(side, position, length):
     ids=" ".join,
 )
 def test_the_speed_changes_steadily_and_a_text_that_changes_it_at_once_is_refused(way):
-    motion = written(way, ramps=RAMPS)[1]
+    motion = write_program(way, ramps=RAMPS)[1]
     moves = motion.deposit & (motion.point > 0)
     ramped = np.zeros(len(moves), dtype=bool)
     for layer in range(2):
@@ -146,7 +146,7 @@ FOLLOWING = {
 )
 def test_a_wire_that_follows_the_speed_is_read_back_through_a_ramp(post, kind, feed, compress):
     """Every value that the text sets in a ramp counts: a changed or missing value is rejected."""
-    cell, motion, _, _ = written((post, kind, feed, "table"), ramps=RAMPS)
+    cell, motion, _, _ = write_program((post, kind, feed, "table"), ramps=RAMPS)
     moves = motion.deposit & (motion.point > 0)
     motion = dataclasses.replace(motion, wire=np.where(motion.deposit, 12.5 * motion.speed, np.nan))
     nc = NcParameters(feed=feed, wire_output=3, wire_gain=0.01, compress=compress)

@@ -22,7 +22,7 @@ from tests.posts.planned_jobs import (
     SETUPS,
     WAYS,
     planned,
-    written,
+    write_program,
 )
 from tests.posts.test_contract import DEEP, bodies_of
 from tests.programs import build
@@ -85,7 +85,7 @@ def after(events, row):
 def test_it_is_the_rest_of_the_whole_text(way, start):
     _, motion, rows, _, _, files = resumed(way, STARTS[start])
     post = catalogue.load(way[0])
-    resumed_text, complete = post.read(files), post.read(written(way)[3])
+    resumed_text, complete = post.read(files), post.read(write_program(way)[3])
     first_row = len(complete.deposit) - len(
         resumed_text.deposit
     )  # the row of the complete text at which the resumed text begins
@@ -119,7 +119,7 @@ def test_it_is_the_rest_of_the_whole_text(way, start):
 def test_it_comes_from_over_what_was_laid_before(way, start):
     cell, motion, _, run, program, files = resumed(way, STARTS[start])
     post = catalogue.load(way[0])
-    resumed_text, complete = post.read(files), post.read(written(way)[3])
+    resumed_text, complete = post.read(files), post.read(write_program(way)[3])
     first_row, begins = (
         len(complete.deposit) - len(resumed_text.deposit),
         int(np.argmax(resumed_text.deposit)),

@@ -8,7 +8,7 @@ import pytest
 from freecad_am.core.issues import has_errors
 from freecad_am.posts import catalogue
 from freecad_am.verify import verify
-from tests.posts.planned_jobs import CHORD_ERROR, ONE_OF_EACH, WAYS, planned, written
+from tests.posts.planned_jobs import CHORD_ERROR, ONE_OF_EACH, WAYS, planned, write_program
 
 pytestmark = pytest.mark.any_version
 
@@ -24,7 +24,7 @@ def _steps(points):
 def test_beads_end_where_they_were_before_their_end(way):
     """The motion of the plan and then the text, read back and compared with it, return over each
     bead's end, with a stop at both ends."""
-    cell, motion, program, files = written(way, retreat=RETREAT_MM)
+    cell, motion, program, files = write_program(way, retreat=RETREAT_MM)
     checked = verify(cell, motion, program, files, catalogue.load(way[0]), CHORD_ERROR)
     assert not has_errors(checked.issues), [issue.message for issue in checked.issues]
     plain = planned(way[3])[1]
@@ -57,11 +57,11 @@ TIMED = [variant for variant in WAYS if variant[1:3] == ("joint", "time") and va
 def test_a_text_that_does_not_stop_there_is_refused(way):
     """A text without one of the stops is rejected, in posts that stop once more for each bead than
     without a retreat."""
-    cell, motion, program, files = written(way, retreat=RETREAT_MM)
+    cell, motion, program, files = write_program(way, retreat=RETREAT_MM)
     stop, passed = STOPS[way[0]]
     files_, plain_files = (
         {name: data.decode("ascii") for name, data in program_files.items()}
-        for program_files in (files, written(way)[3])
+        for program_files in (files, write_program(way)[3])
     )
     stop_count, plain_stop_count = (
         sum(text.count(stop) for text in program_files.values())

@@ -16,7 +16,7 @@ from freecad_am.core.planning.program import build_header
 from freecad_am.posts import catalogue
 from freecad_am.read_back import followed
 from freecad_am.read_back.selected import selection_findings
-from tests.posts.planned_jobs import written
+from tests.posts.planned_jobs import write_program
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 # folder or file of a program, and the lines that a statement may precede
@@ -312,7 +312,7 @@ FRAMES = [
 
 
 def findings(variant, files, expected):
-    cell, _, _, _ = written(variant)
+    cell, _, _, _ = write_program(variant)
     readback = catalogue.load(variant[0]).read(files)
     header = build_header(
         cell, ProgramParameters(post=variant[0]), catalogue.controller(variant[0]), "check"
@@ -326,7 +326,7 @@ def findings(variant, files, expected):
 
 @pytest.mark.parametrize(("way", "old", "new", "words"), FRAMES)
 def test_another_frame_or_tool_than_the_job_s_is_reported(way, old, new, words):
-    files = written(way)[3]
+    files = write_program(way)[3]
     assert any(old.encode() in content for content in files.values())
     changed = {name: content.replace(old.encode(), new.encode()) for name, content in files.items()}
     assert findings(way, files, (1, 1)) == []
@@ -336,7 +336,7 @@ def test_another_frame_or_tool_than_the_job_s_is_reported(way, old, new, words):
 
 def test_a_frame_or_tool_that_changes_on_the_way_is_an_error():
     variant = ("linuxcnc", "cartesian", "time", "table")
-    ((name, content),) = written(variant)[3].items()
+    ((name, content),) = write_program(variant)[3].items()
     for old, new in ((b"G54", b"G55"), (b"M428", b"G49\nM428")):
         positions = [finding.start() for finding in re.finditer(rb"\b" + old, content)]
         assert len(positions) > 2
@@ -348,7 +348,7 @@ def test_a_frame_or_tool_that_changes_on_the_way_is_an_error():
 
 def test_a_program_that_is_not_among_the_files_is_reported_once():
     variant = ("siemens", "joint", "time", "table")
-    _, motion, _, files = written(variant)
+    _, motion, _, files = write_program(variant)
     reported = selection_findings(motion, catalogue.load(variant[0]).read(files), None)
     assert [(finding.issue.level, finding.issue.code) for finding in reported] == [
         (WARNING, "OTHER_PROGRAM")

@@ -271,10 +271,12 @@ def test_random_programs_come_back(random_program, seed, motion):
 def test_rotations_of_half_a_turn_and_of_none():
     for axis in np.eye(3)[[0, 1, 2]], np.array([[0.6, 0.0, 0.8], [-0.6, 0.8, 0.0]]):
         for angle in (0.0, 1e-9, 1e-4, 3.0, np.pi - 1e-7, np.pi):
-            given = np.array([rotation_by_series(angle * component) for component in axis])
-            vectors = ROTATION_VECTOR.numbers(given)
+            rotation_vectors = np.array(
+                [rotation_by_series(angle * component) for component in axis]
+            )
+            vectors = ROTATION_VECTOR.numbers(rotation_vectors)
             np.testing.assert_allclose(
-                [rotation_by_series(vector) for vector in vectors], given, atol=1e-8
+                [rotation_by_series(vector) for vector in vectors], rotation_vectors, atol=1e-8
             )
             assert np.linalg.norm(vectors, axis=1).max() <= np.pi + 1e-12
 

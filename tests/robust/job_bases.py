@@ -192,10 +192,10 @@ def bases(folder):
             (f"{family} on {machine}", _place_on_machine(machine, sections, folder))
             for family, sections in FAMILIES.items()
         ]
-    return jobs + [*_with_options(folder), *_on_tracks(folder)]
+    return jobs + [*_add_options(folder), *_put_on_tracks(folder)]
 
 
-def _with_options(folder):
+def _add_options(folder):
     """Return jobs of some families and machines with additional sections, those of
     FAMILY_OPTIONS."""
     for machine in TOLD_ON:
@@ -208,7 +208,7 @@ def _with_options(folder):
                 )
 
 
-def _on_tracks(folder):
+def _put_on_tracks(folder):
     """Return jobs of robots on a track, with and without a positioner."""
     for machine, (point, post) in TRACKS.items():
         for family in ("curves", "solid"):

@@ -138,14 +138,14 @@ def revolved(chance, size):
     else:
         shape = Part.Wire(edges).revolve(FreeCAD.Vector(), UP, _turn(chance))
 
-    def away(points):
+    def distance(points):
         r = np.hypot(points[:, 0], points[:, 1])
         return np.min([_off_line(r - add, points[:, 2], line) for add in {0.0, thick}], axis=0)
 
     def margin(job):
         return _is_on_wall(job) + (thick if job["strategy"].get("wall") == "middle" else 0.0)
 
-    return {"strategy": {"kind": "revolution"}}, shape, None, away, margin
+    return {"strategy": {"kind": "revolution"}}, shape, None, distance, margin
 
 
 def _turn(chance):
@@ -184,11 +184,11 @@ def tube(chance, size):
     cut = wall.cut(foot)
     faces = [face for face in cut.Faces if face.BoundBox.ZMax > 0.9 * high]
 
-    def away(points):
+    def distance(points):
         r = np.hypot(points[:, 0], points[:, 1])
         return np.abs(r - radius - slope * points[:, 2]) / math.hypot(1.0, slope)
 
-    return _surface(), faces[0] if faces else wall, foot, away, _is_on_wall
+    return _surface(), faces[0] if faces else wall, foot, distance, _is_on_wall
 
 
 def _foot(chance, size, radius):
@@ -222,12 +222,12 @@ def bend(chance, size):
     )
     middle = torus.MajorRadius
 
-    def away(points):
+    def distance(points):
         return np.abs(
             np.hypot(np.hypot(points[:, 0] + middle, points[:, 2]) - middle, points[:, 1]) - small
         )
 
-    return _surface(), shape, foot, away, _is_on_wall
+    return _surface(), shape, foot, distance, _is_on_wall
 
 
 def sheared(chance, size):
@@ -243,11 +243,11 @@ def sheared(chance, size):
     foot = _foot(chance, size, radius)
     faces = [face for face in wall.cut(foot).Faces if face.BoundBox.ZMax > 0.9 * tall]
 
-    def away(points):
+    def distance(points):
         r = np.hypot(points[:, 0] - lean * points[:, 2], points[:, 1])
         return np.abs(r - radius) / math.hypot(1.0, lean)  # a lower bound
 
-    return _surface(), faces[0] if faces else wall, foot, away, _is_on_wall
+    return _surface(), faces[0] if faces else wall, foot, distance, _is_on_wall
 
 
 def lofted(chance, size):
@@ -309,10 +309,10 @@ def boxes_on_hub(chance, size):
     remainder = Part.Compound(fused.cut(hub).Solids)
     facets = _facets(remainder)
 
-    def away(points):
+    def distance(points):
         return np.where(triangles.inside(points, facets), 0.0, triangles.distance(points, facets))
 
-    return {"strategy": {"kind": "developable"}}, remainder, hub, away, _beside_solids
+    return {"strategy": {"kind": "developable"}}, remainder, hub, distance, _beside_solids
 
 
 def _beside_solids(job):
@@ -357,11 +357,11 @@ def mixed(chance, size):
             + (size if job["strategy"].get("wall") == "middle" else 0.0)
         )
 
-    def away(points):
+    def distance(points):
         off = triangles.distance(points, facets)
         return np.where(triangles.inside(points, facets), 0.0, off) if kind in FILLED else off
 
-    return {"strategy": {"kind": kind}}, shape, foot, away, margin
+    return {"strategy": {"kind": kind}}, shape, foot, distance, margin
 
 
 FILLED = ("developable", "solid")

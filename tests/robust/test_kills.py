@@ -131,16 +131,16 @@ def test_asked_to_end_while_files_are_moved_it_ends_with_all_of_them(monkeypatch
     for step in range(1, 60):
         out = tmp_path / str(step)
         publish(out, OLD)
-        told = tmp_path / f"told {step}"
+        signal_file = tmp_path / f"told {step}"
 
-        def work(out=out, step=step, told=told):
+        def work(out=out, step=step, signal_file=signal_file):
             session = console.Session()
             signal.signal(number, session._interrupt)
             dying(monkeypatch, step, lambda: os.kill(os.getpid(), number))
             try:
                 publish(out, NEW, session)
             except KeyboardInterrupt:
-                told.write_text(session.outcome)
+                signal_file.write_text(session.outcome)
                 os._exit(130)
 
         status = in_child(work)
@@ -149,7 +149,7 @@ def test_asked_to_end_while_files_are_moved_it_ends_with_all_of_them(monkeypatch
         if status == 0:
             break
         assert status == 130
-        assert told.read_text() == (
+        assert signal_file.read_text() == (
             "nothing was written" if output_files == OLD else "the outputs were already complete"
         )
     assert output_files == NEW and step > 8
