@@ -53,8 +53,10 @@ POINTS_AN_EDGE = 2.5
 # CPU seconds for a point on a mesh; measured: 0.41 to 0.56 ms for the toolpath
 SECONDS_A_MESH_POINT = 7e-4
 # beads of solids in plane layers: chords keep to this share of the chord error (`beads.NEEDLESS`);
-# points of contours inside those of the border; share of the border along links; points of a line
-CHORD_SHARE, INNER_FACTOR, LINKED_SHARE, POINTS_A_LINE = 0.12, 1.5, 0.6, 4.0
+# points of contours inside those of the border; share of the border along links; points of a line,
+# and of one whose width tapers at its ends
+CHORD_SHARE, INNER_FACTOR, LINKED_SHARE = 0.12, 1.5, 0.6
+POINTS_A_LINE, POINTS_A_TAPERED_LINE = 4.0, 40.0
 MIN_CHORDS = 24  # minimum number of points of a bead on a wall
 PLACES = 181  # number of samples along meridians and tubes
 MAX_SAMPLES = 20_000  # maximum number of sampled vertices for the extent of a wall
@@ -233,7 +235,7 @@ def _plane_points(body: Body, base: Base, length: float, strategy: FilledParamet
 
     Beads along the border have a point at each corner of the border and on its arcs. Contours farther inside have fewer:
     of a disc whose radius shrinks evenly, an arc has two thirds of the points and half of the length. Arcs around corners
-    of holes, and lines that holes cut, are not counted.
+    of holes are not counted.
     """
     corners, sides = _borders(body, base, CHORD_SHARE * strategy.chord_error)
     if sides <= 0.0:
@@ -247,7 +249,8 @@ def _plane_points(body: Body, base: Base, length: float, strategy: FilledParamet
     )  # mean length of lines across (Cauchy)
     lines = max(length - walls, 0.0) / chord
     along_border = walls / around + (LINKED_SHARE if strategy.fill == "zigzag" else 0.0)
-    return along_border * corners / strategy.layer_height + POINTS_A_LINE * lines
+    a_line = POINTS_A_TAPERED_LINE if strategy.adapts_widths else POINTS_A_LINE
+    return along_border * corners / strategy.layer_height + a_line * lines
 
 
 def _borders(body: Body, base: Base, chord_error: float) -> tuple[float, float]:

@@ -160,11 +160,13 @@ def turned_solid(corners, sides):
         ("a disc", 300, 0.01, "lines"),
         ("a disc", 4, 0.01, "contours"),
         ("a disc", 4, 0.01, "lines"),
+        ("a disc", 4, 0.01, "zigzag"),
         ("a cone", 120, 0.05, "contours"),
         ("a cone", 120, 0.05, "zigzag"),
         ("a cone", 120, 0.05, "lines"),
         ("a tube", 300, 0.01, "contours"),
         ("a tube", 300, 0.01, "zigzag"),
+        ("a tube", 300, 0.01, "lines"),
     ],
 )
 def test_points_of_solids_in_planes_are_estimated_within_a_factor_of_2(
