@@ -236,7 +236,7 @@ def test_meshes_that_can_be_mended_are():
             "(10, 10, 0)",
         ),
         (points, corners[1:], 8000.0, "MESH_REPAIRED", "1 missing triangles"),
-        (points, corners[:, ::-1], 8000.0, "MESH_REPAIRED", "inside out"),
+        (points, corners[:, ::-1], 8000.0, "MESH_REPAIRED", "inside-out"),
         (
             points,
             np.vstack([corners[:1, ::-1], corners[1:]]),

@@ -120,7 +120,7 @@ def test_a_fanuc_from_its_urdf_checked_by_its_pendant(person, hand, wizard, tmp_
     assert person.field(wizard, "frames").item(0, 2).text() == "525"
     person.screenshot("machine_3_frames")
     go_on(person, hand, wizard, "PosesPage")
-    assert "at least 3 are needed" in refused(person, hand, wizard)
+    assert "needs at least 3" in refused(person, hand, wizard)
     poses = person.field(wizard, "poses")
     figures = pendant_poses()
     type_row(person, hand, poses, 0, figures[0])

@@ -387,7 +387,7 @@ def fill(
     if FILLS[pattern].follows_border and infill.density == 1.0:
         curves = ON_BORDERS[pattern](region, inner, beads)
     else:
-        link = (longest_link or LINK * beads.spacing) if pattern == "zigzag" else None
+        link = (longest_link or LINK * beads.spacing) if FILLS[pattern].is_linked else None
         rounds = 0 if math.isinf(walls) else int(walls)
         framed = frame(region, inner, beads, rounds)
         curves = framed.thin + framed.curves

@@ -21,13 +21,15 @@ class Fill:
     follows_border: beads run along the border everywhere, so that there are no contours around
     them. can_be_sparse: it can fill a share of the area. all_round: the fill in its place in a
     layer all around a hub, where its beads would have no ends; '' for none. adapts_widths: the
-    widths of its beads may follow the thickness of a region where it fills everything.
+    widths of its beads may follow the thickness of a region where it fills everything. is_linked:
+    links along the walls join its lines.
     """
 
     follows_border: bool = False
     adapts_widths: bool = False
     can_be_sparse: bool = True
     all_round: str = ""
+    is_linked: bool = False
 
 
 FILLS = {
@@ -35,7 +37,7 @@ FILLS = {
     "connected": Fill(follows_border=True, can_be_sparse=False, all_round="contours"),
     "lines": Fill(adapts_widths=True),
     "spiral": Fill(follows_border=True, can_be_sparse=False, all_round="contours"),
-    "zigzag": Fill(adapts_widths=True, all_round="lines"),
+    "zigzag": Fill(adapts_widths=True, all_round="lines", is_linked=True),
     "grid": Fill(adapts_widths=True, all_round="lines"),
     "triangles": Fill(adapts_widths=True, all_round="lines"),
     "honeycomb": Fill(adapts_widths=True, all_round="lines"),

@@ -397,7 +397,7 @@ def _adapt_widths(
         adapted = adapt_contours(region, beads, law)
     else:
         link = (strategy.longest_link or LINK) * beads.spacing
-        longest_link = link if strategy.fill == "zigzag" else None
+        longest_link = link if FILLS[strategy.fill].is_linked else None
         adapted = adapt_lines(region, beads, law, angle, int(strategy.rounds), longest_link)
     if not adapted or _fault(region, adapted, beads) > BETTER * fault:
         return None
