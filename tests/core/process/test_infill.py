@@ -258,7 +258,7 @@ def cover_of(flat, widths, closed):
     """Flat bands along each segment, mitred corners between them, and round ends."""
     if not closed:
         for _ in range(2):
-            flat, widths = cut(flat, widths, math.pi / 8.0 * widths[0])
+            flat, widths = cut(flat, widths)
             flat, widths = flat[::-1], widths[::-1]
     polygons = [
         geometry.LineString(flat[k : k + 2]).buffer(0.5 * widths[k], cap_style=2)
@@ -288,13 +288,17 @@ def cover_of(flat, widths, closed):
     return polygons
 
 
-def cut(flat, widths, by):
-    """Cut the first `by` mm off a line."""
-    while np.hypot(*(flat[1] - flat[0])) <= by:
-        by -= float(np.hypot(*(flat[1] - flat[0])))
+def cut(flat, widths):
+    """Cut off the start of a line: the area of a half circle as wide as the rest."""
+    removed = 0.0
+    while True:
+        segment = flat[1] - flat[0]
+        length = float(np.hypot(*segment))
+        by = max(math.pi / 8.0 * widths[0] - removed / widths[0], 0.0)
+        if length > by or len(widths) == 1:
+            return np.vstack([flat[0] + by * segment / length, flat[1:]]), widths
+        removed += length * widths[0]
         flat, widths = flat[1:], widths[1:]
-    segment = flat[1] - flat[0]
-    return np.vstack([flat[0] + by * segment / np.hypot(*segment), flat[1:]]), widths
 
 
 FILLS = [
