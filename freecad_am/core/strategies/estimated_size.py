@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 # Memory per point, measured at a million points: 0.3 kB for the toolpath, 0.6 kB with joint path and document, 1.5 kB at
 # the peak. This limit needs more than 70 GB and is fifty times the largest known job
 MOST_POINTS = 50_000_000
+MOST_BEADS = 2_500_000  # a bead with few points needs the memory of about 20 points
 LARGE_CODE = "LARGE"
 LARGE_SECONDS, LARGE_GIGABYTES = (
     30.0,
@@ -84,7 +85,7 @@ _SECONDS_A_POINT: dict[type, float] = {
 class Size:
     """Estimated numbers of layers and points of a toolpath.
 
-    squares: number of bead-spacing squares in all layers, if each layer is filled separately. nodes: number of grid
+    beads: number of beads of solids in plane layers, 0 if not estimated. squares: number of bead-spacing squares in all layers, if each layer is filled separately. nodes: number of grid
     nodes for curved layers. folds: length of folds in the mesh of a wall, mm. vertices: number of mesh vertices, 0 for
     exact walls.
     """
@@ -95,6 +96,7 @@ class Size:
     nodes: float = 0.0
     folds: float = 0.0
     vertices: float = 0.0
+    beads: float = 0.0
 
     @property
     def gigabytes(self) -> float:
@@ -191,7 +193,7 @@ def solids_size(
     """
     if spacing is None:
         spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
-    layers = points = squares = nodes = 0.0
+    layers = points = beads = squares = nodes = 0.0
     for group in solids.groups:
         heights, volume = [], 0.0
         for body in group.bodies:
@@ -211,7 +213,9 @@ def solids_size(
                 / spacing
             )
             if isinstance(group.base.surface, Plane):
-                points += _plane_points(body, group.base, length, strategy)
+                plane_points, plane_beads = _plane_size(body, group.base, length, strategy)
+                points += plane_points
+                beads += plane_beads
             else:
                 # beads run around the hub for half of their length, with half of the chord error for
                 # their chords; and they end
@@ -227,11 +231,13 @@ def solids_size(
         ) / strategy.layer_height
         if strategy.has_curved_layers:
             nodes += volume / step_of(volume, strategy.layer_height) ** 3
-    return Size(layers, points, squares, nodes)
+    return Size(layers, points, squares, nodes, beads=beads)
 
 
-def _plane_points(body: Body, base: Base, length: float, strategy: FilledParameters) -> float:
-    """Estimate the points of a solid in plane layers, filled by beads of a total length, mm.
+def _plane_size(
+    body: Body, base: Base, length: float, strategy: FilledParameters
+) -> tuple[float, float]:
+    """Estimate the points and beads of a solid in plane layers, filled by beads of a total length, mm.
 
     Beads along the border have a point at each corner of the border and on its arcs. Contours farther inside have fewer:
     of a disc whose radius shrinks evenly, an arc has two thirds of the points and half of the length. Arcs around corners
@@ -239,9 +245,11 @@ def _plane_points(body: Body, base: Base, length: float, strategy: FilledParamet
     """
     corners, sides = _borders(body, base, CHORD_SHARE * strategy.chord_error)
     if sides <= 0.0:
-        return 0.0
+        return 0.0, 0.0
+    height = float(np.ptp(base.inside(body.vertices)[:, 2]))
     if strategy.rounds_alone:
-        return INNER_FACTOR * length * corners / sides
+        # contours shrink evenly to the middle, so their mean length is half of the border's
+        return INNER_FACTOR * length * corners / sides, 2.0 * length * height / sides
     around = sides / strategy.layer_height  # mm, one wall in all layers
     walls = min(strategy.rounds * around, length)
     chord = (
@@ -250,7 +258,8 @@ def _plane_points(body: Body, base: Base, length: float, strategy: FilledParamet
     lines = max(length - walls, 0.0) / chord
     along_border = walls / around + (LINKED_SHARE if strategy.fill == "zigzag" else 0.0)
     a_line = POINTS_A_TAPERED_LINE if strategy.adapts_widths else POINTS_A_LINE
-    return along_border * corners / strategy.layer_height + a_line * lines
+    points = along_border * corners / strategy.layer_height + a_line * lines
+    return points, lines + walls * height / sides
 
 
 def _borders(body: Body, base: Base, chord_error: float) -> tuple[float, float]:
@@ -321,7 +330,7 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
     Raises
     ------
     InputError
-        TOO_MANY for more than MOST_LAYERS or MOST_POINTS. The message names the parameter
+        TOO_MANY for more than MOST_LAYERS, MOST_BEADS or MOST_POINTS. The message names the parameter
         farthest below its usual value.
     """
     height = strategy.layer_height
@@ -334,6 +343,20 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
             count(size.layers),
             MOST_LAYERS,
             at_least(height * size.layers / MOST_LAYERS),
+        )
+    if size.beads > MOST_BEADS:
+        cause = max(
+            (candidate for candidate in _causes(strategy, width) if candidate.power == 1.0),
+            key=lambda candidate: candidate.usual / candidate.value,
+        )
+        raise InputError(
+            "TOO_MANY",
+            cause.key,
+            "{:g} mm gives about {} beads, above the limit of {:,}; use at least {:g} mm",
+            cause.value,
+            count(size.beads),
+            MOST_BEADS,
+            at_least(cause.value * size.beads / MOST_BEADS),
         )
     over = size.points / MOST_POINTS
     if over > 1.0:
