@@ -316,7 +316,7 @@ def test_widths_outside_of_the_table_are_told_with_their_number_and_the_worst(fi
         300.0, rel=1e-6
     )
     beads, bead_count, segments, worst = re.search(
-        r"in (\d+) of (\d+) beads and (\d+) segments.*it is (\S+) mm at", message
+        r"in (\d+) of (\d+) beads and (\d+) segments.*width is (\S+) mm at", message
     ).groups()
     assert (int(bead_count), float(worst)) == (
         report["counts"]["beads"],

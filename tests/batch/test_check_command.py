@@ -168,7 +168,7 @@ def test_a_nozzle_that_deposits_below_the_platform_is_told(workshop, sound, dept
     command = run(workshop)
     assert command.err.count("error[INTO_PLATFORM]") == told, command.err
     if told:
-        depth_said = float(re.search(r"here ([\d.]+) mm", command.err)[1])
+        depth_said = float(re.search(r" by ([\d.]+) mm", command.err)[1])
         assert command.status == 3 and depth_said == pytest.approx(depth, abs=0.02)
         assert re.match(r" *\d+:[JL] P\[", reported_line(workshop, command, "INTO_PLATFORM"))
 

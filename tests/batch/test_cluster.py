@@ -272,7 +272,7 @@ def test_a_cluster_without_workers_or_with_one_that_cannot_plan(workshop, cluste
     assert sum("note[WORKER]" in line for line in session.lines) == 2
     assert (
         sum(
-            bool(re.match(r"warning\[VERSIONS\] tcp://\S+: here is FreeCAD 9.9.9", line))
+            bool(re.match(r"warning\[VERSIONS\] tcp://\S+: this machine has FreeCAD 9.9.9", line))
             for line in session.lines
         )
         == 2

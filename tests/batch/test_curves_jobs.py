@@ -94,7 +94,7 @@ def test_forms_of_a_table(planned, text):
         ("0,0,0\n\n1,0,0\n", "line 2", "the line is empty"),
         ("0,0,0\n1,nan,0\n", "line 2", "y is nan"),
         ("0,0,0\n1,inf,0\n", "line 2", "y is inf"),
-        ("0,0,0\n1,0,0\n1,0,0\n", "line 3", "remove it"),
+        ("0,0,0\n1,0,0\n1,0,0\n", "line 3", "remove the line"),
         ("0,0,0\n", "line 1", "one point"),
         ("0,0,0,1\n1,0,0,1\n2,0,0,2\n", "line 3", "one point"),
         ("0,0,0\n1,0,zero\n", "line 2", "'zero' is not a number"),

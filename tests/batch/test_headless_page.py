@@ -137,7 +137,7 @@ def test_other_ways_to_set_a_value(root, model, column, value, radius, height):
         ("part.set.Sizes.radius", "5,5 mm", "'5,5 mm' does not fit"),
         ("part.set.Sizes.B7", "5 mm", "cell B7 of Sizes is empty"),
         ("part.set.Sizes.width", "5 mm", "alias or address 'width'"),
-        ("part.set.Profile.Constraints.depth", "5 mm", "(it has radius, height)"),
+        ("part.set.Profile.Constraints.depth", "5 mm", "only radius, height"),
         ("part.set.Profile.Constraints.height", "5 deg", "'5 deg' does not fit"),
     ],
 )

@@ -181,7 +181,7 @@ def test_a_small_part_by_a_robot_that_takes_no_short_moves(workshop):
     assert command.status == 2
     refusal = re.search(
         r"error\[BEAD_TOO_LONG\] job.yaml: program.max_points: layer 1 bead 0 has (\d+) points, and"
-        r".* use at least (\d+)",
+        r".* at least (\d+)",
         command.err,
     )
     assert refusal and 40 < int(refusal[1]) < int(refusal[2])
