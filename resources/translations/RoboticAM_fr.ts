@@ -16468,6 +16468,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
+        <source>{0} mm gives about {1} beads, above the limit of {2}; use at least {3} mm</source>
+        <translation>{0} mm font environ {1} cordons, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
         <source>{0} mm gives about {1} layers, above the limit of {2}; use at least {3} mm</source>
         <translation>{0} mm font environ {1} couches, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
     </message>
