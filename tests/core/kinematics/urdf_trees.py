@@ -112,7 +112,7 @@ def is_so(text, axes, message):
         return any(f"the link {link!r} already has a parent joint" in message for link in twice)
     slide = sum(joint.get("type") == "prismatic" for joint in axes)
     if len(axes) != 6 or slide:
-        return f"it has {len(axes)} axes, {slide} prismatic" in message
+        return f"the machine has {len(axes)} axes, {slide} prismatic" in message
     # six revolute joints: the named end is off axis 6
     name = re.search(r"from \S+ to (\S+):", message)
     is_off_axis = name is not None and "the flange origin is not on axis 6" in message

@@ -120,7 +120,7 @@ def test_tables_that_are_none(rows, code):
 @pytest.mark.parametrize(
     "rows, told",
     [
-        (TABLE[:1], "it has 1 row; measure at least 4 beads"),
+        (TABLE[:1], "the bead table has 1 row; measure at least 4 beads"),
         (
             TABLE[:3] + TABLE[:3],
             "all beads have the radius 30 mm; measure at least two speeds and two radii",

@@ -59,7 +59,7 @@ def test_texts_read_back(seed):
         ("contour: travel_speed 0", "more than 0"),
         ("outer: lead 5", "'outer' is not a valid choice"),
         ("contour: lead 5; contour: tilt 5", "contour is defined twice"),
-        ("fill: speed 5", "no 'speed'"),
+        ("fill: speed 5", "no setting 'speed'"),
         ("fill: lead", "has no number"),
         ("fill: schedule 2.5", "whole number"),
         ("fill: schedule 0", "at least 1"),
