@@ -72,6 +72,7 @@ TEXTS = {
     "point": "40 -0.5 12.25",
     "away_from": "0.5 -1 0",
     "classes": "first_layer: travel_speed 4.5, schedule 2; fill: lead -5, lead_on 0.25, weave 2",
+    "settings": "layers 0 to 4: travel_speed 4.5, schedule 3; height to 5 and inside Zone: lead_on 0.5",
     "obstacles": "post = box 60 60 400 at 900 -0.25 0 0 30 0",
     "touched": "0 0 0 = 900.5 2 -99; 9 0 0.25 = 909 2 -99",
 }
