@@ -284,7 +284,7 @@ WRONG_VALUES = {
     "cell": lambda w: w.cell,
     "program": lambda w: w.program,
     "deleted": lambda w: w.gone,
-    "elsewhere": lambda w: w.there,
+    "elsewhere": lambda w: w.foreign_box,
     "document": lambda w: w.doc,
     "closed": lambda w: w.closed,
     "element": lambda w: (w.box, "Foo"),
