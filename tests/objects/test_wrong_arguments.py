@@ -240,6 +240,7 @@ RIGHT_ARGUMENTS = {  # valid arguments of each function, by name
         **COARSE,
     },
     "make_toolpath": lambda w: {
+        "zones": [w.pipe],
         "doc": w.doc,
         "feature": w.feature,
         "cell": w.cell,
