@@ -142,7 +142,7 @@ def test_what_is_proposed_is_named_as_the_panel_names_it(doc, monkeypatch):
     monkeypatch.setattr(suit, "_write", lambda *_: None)
     suit.suit(cell, None)
     assert messages == [
-        "Cell: Platform, Arm clearance: proposed for this job; enter what yours really has\n"
+        "Cell: Platform, Arm clearance: proposed for this job; enter the values of your cell\n"
     ]
 
 
