@@ -8,7 +8,7 @@ import shutil
 from tests.batch.conftest import Workshop
 
 PROGRAMS = (  # hashes of the bracket's programs, equal in all versions
-    ""
+    "4eaf400439cd4386022579faf42d5675f4c954023d11ec70d54e215d9340f7d0"
 )
 
 
