@@ -12,11 +12,14 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..geometry.developable import Plane
 from ..geometry.mesh.triangle_mesh import Mesh
+from ..geometry.on_hub import Base
 from ..geometry.step_count import step_counts
 from ..types import Array, Index, Mask
 from .surface import Wrapped
 
+PART = Base("the part", Plane(), np.eye(4))  # charts are in part coordinates
 CELL = 1.5  # in typical edges; side of the squares of the search grid
 OUTSIDE = -1e-6  # minimum barycentric coordinate of a point inside a triangle
 
@@ -201,11 +204,40 @@ MIN_HORIZONTAL = (
     0.9  # maximum X component of a normal; above it, Y replaces X as reference direction
 )
 
-Same = TypeVar("Same", bound="Charted")
+Same = TypeVar("Same", bound="OpenSurface")
+
+
+class OpenSurface:
+    """What layers have in common that do not close on the plane, in part coordinates."""
+
+    @property
+    def period(self) -> None:
+        """None: the layer does not close; closed pieces are cut open."""
+        return None
+
+    @property
+    def bends_freely(self) -> bool:
+        """False: the layer bends as the faces do."""
+        return False
+
+    def heights(self, flat: Array) -> None:
+        """Return None: the layer height is constant."""
+
+    def for_sheet(self: Same, flat: Array, sheet: float) -> Same:
+        """Return this surface, which does not overlap itself on the plane."""
+        return self
+
+    def plane_rotation(self, azimuth: float) -> float:
+        """Return 0: the plane has only one orientation."""
+        return 0.0
+
+    def axes(self, normals: Array) -> tuple[Array, Array]:
+        """Return the part's X and Y projected onto the layer, see `chart.axes`."""
+        return axes(normals)
 
 
 @dataclass(frozen=True, eq=False)
-class Charted:
+class Charted(OpenSurface):
     """Layer on the chart of one of its pieces, a `LayerSurface`.
 
     Distances and angles on the plane equal those in the part up to the stretch of the chart.
@@ -235,16 +267,6 @@ class Charted:
             Unit normals of the layer.
         """
 
-    @property
-    def period(self) -> None:
-        """None: the layer does not close; closed pieces are cut open."""
-        return None
-
-    @property
-    def bends_freely(self) -> bool:
-        """False: the layer bends as the faces do."""
-        return False
-
     def unroll(self, points: Array) -> Array:
         """Return the nearest vertices of the chart, (n, 2), mm."""
         return self.chart.flat[np.asarray(self.chart.mesh.tree.query(points)[1], dtype=np.intp)]
@@ -261,17 +283,6 @@ class Charted:
             -np.unwrap(np.arctan2((x * axis_y).sum(axis=1), (x * axis_x).sum(axis=1))),
         )
 
-    def heights(self, flat: Array) -> None:
-        """Return None: the layer height is constant."""
-
-    def for_sheet(self: Same, flat: Array, sheet: float) -> Same:
-        """Return this surface, which does not overlap itself on the plane."""
-        return self
-
-    def plane_rotation(self, azimuth: float) -> float:
-        """Return 0: the plane has only one orientation."""
-        return 0.0
-
     def pieces(self, flat: Array, chord_error: float) -> Index:
         """Return the number of pieces of each edge that keeps the chord error, mm."""
 
@@ -279,10 +290,6 @@ class Charted:
             return self.in_part(self.chart.find(points))[0]
 
         return count_pieces(in_part, flat, self.look, chord_error)
-
-    def axes(self, normals: Array) -> tuple[Array, Array]:
-        """Return the part's X and Y projected onto the layer, see `chart.axes`."""
-        return axes(normals)
 
 
 def count_pieces(

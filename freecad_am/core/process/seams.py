@@ -15,6 +15,7 @@ import numpy as np
 
 from ..geometry.columns import crosses, dots, lengths, unit_rows
 from ..geometry.curves.outline import CORNER
+from ..geometry.frames import unit
 from ..geometry.ramps import MIN_STEP, STEPS
 from ..geometry.step_count import round_down
 from ..issues import WARNING, InputError, Issue, Text
@@ -318,7 +319,7 @@ class SeamPlacer:
         locations = (
             _sharpest(loop)
             if seam.position == SHARPEST
-            else _hidden(loop, _unit(seam.away_from), self._tolerance)
+            else _hidden(loop, unit(np.array(seam.away_from)), self._tolerance)
         )
         self._applies |= bool(locations)
         self._without += not locations
@@ -446,11 +447,6 @@ def _surrounds(loop: _Loop, point: Array) -> bool:
     return bool(abs(np.arctan2(across, along).sum()) > math.pi)
 
 
-def _unit(vector: Sequence[float] | None) -> Array:
-    assert vector is not None
-    return np.asarray(np.array(vector) / math.hypot(*vector))
-
-
 def start_bead(bead: Bead, location: SeamLocation) -> Bead:
     """Return the bead with its seam at a place, where a point is added if it has none; START changes nothing."""
     if location == START:
@@ -513,15 +509,15 @@ def check_parameters(seam: SeamParameters) -> None:
 
 def check_distance(toolpath: Toolpath, seam: SeamParameters) -> None:
     """Raise InputError BAD_VALUE if starts are to be farther apart than any closed bead is long."""
-    lengths_ = [bead.length for _, _, bead in toolpath if bead.closed]
-    if seam.position == SPREAD and lengths_ and max(lengths_) < seam.distance:
+    longest = max((bead.length for _, _, bead in toolpath if bead.closed), default=math.inf)
+    if seam.position == SPREAD and longest < seam.distance:
         raise InputError(
             "BAD_VALUE",
             "process.seam.distance",
             "is {:g} mm, but the longest closed bead is only {:.4g} mm long; use less than half of "
             "that length",
             seam.distance,
-            max(lengths_),
+            longest,
         )
 
 

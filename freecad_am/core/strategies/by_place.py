@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: LGPL-2.1-or-later_rows
+# SPDX-License-Identifier: LGPL-2.1-or-later
 """Settings by place: where their conditions hold on a toolpath, and beads cut where they change.
 
 A bead gets a point where a condition begins or ends to hold, and stays one deposit. Points are added
@@ -101,7 +101,9 @@ class _Segments:
 
 
 Cuts = tuple[Index, Array]  # segments (k,) and the fractions (k,) at which a condition may change
-Held = Callable[[Index, Array], Mask]  # whether a condition holds at points (k, 3) of segments (k,)
+Holds = Callable[
+    [Index, Array], Mask
+]  # whether a condition holds at points (k, 3) of segments (k,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +111,7 @@ class _Condition:
     """Where a condition may change, and whether it holds."""
 
     cuts: Cuts
-    holds: Held
+    holds: Holds
 
 
 def _levels(values: Array, ends: Array, levels: Sequence[float]) -> Cuts:
@@ -435,7 +437,7 @@ def _select_spaced(row: Index, share: Array, shortest: Array) -> Index:
 def _cut_toolpath(
     toolpath: Toolpath, process: ProcessParameters, spans: _Spans, active: Integers
 ) -> Toolpath:
-    """Return the toolpath with points between pieces with other settings. held: (k,) of the pieces."""
+    """Return the toolpath with points between pieces with other settings. active: (k,) sums of 2^entry of the pieces."""
     same_row = np.diff(spans.row) == 0
     changes = np.flatnonzero(same_row & (np.diff(active) != 0)) + 1
     stays = np.r_[True, ~same_row | (np.diff(active) != 0)]

@@ -11,15 +11,13 @@ import numpy as np
 
 from ..filling.cover import Cover
 from ..geometry.curves.outline import estimate_outline
-from ..geometry.developable import Plane
 from ..geometry.formatting import place
 from ..geometry.mesh.triangle_mesh import Mesh
-from ..geometry.on_hub import Base
 from ..geometry.regions.region import Region, regions
 from ..geometry.walls.patch_wall import CladFaces, PatchWall
 from ..geometry.walls.surface import dot
 from ..issues import NOTE, InputError, Issue, Text
-from ..layers.chart import Chart, Charted, Place, axes
+from ..layers.chart import PART, Chart, Charted, Place, axes
 from ..layers.margins import BORDER
 from ..layers.parted_chart import borders, flatten, split_flattenable, stretch_of
 from ..layers.surface import Slice
@@ -42,7 +40,6 @@ from .solids.notes import notes
 # cut once into pieces that can be flattened. Every layer is flattened separately, so the bead
 # spacing is correct even on the outermost layer of a curved face.
 
-PART = Base("the part", Plane(), np.eye(4))  # charts are in part coordinates
 FOLDED = 0.05  # minimum area ratio of a triangle between a layer and the faces if the layer does not fold
 PROBE = 0.15  # fraction of the chart's extent; half length about the centre on which its direction is measured
 ROUNDS = 5  # iterations of the rotation; one is not exact on curved faces

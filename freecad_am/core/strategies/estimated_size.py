@@ -31,7 +31,7 @@ from ..parameters.strategy import (
     RevolutionParameters,
     SurfaceParameters,
 )
-from ..types import Array
+from ..types import Array, Index
 
 if TYPE_CHECKING:
     from ..geometry.walls.patch_wall import CladFaces, PatchWall
@@ -243,10 +243,12 @@ def _plane_size(
     of a disc whose radius shrinks evenly, an arc has two thirds of the points and half of the length. Arcs around corners
     of holes are not counted.
     """
-    corners, sides = _borders(body, base, CHORD_SHARE * strategy.chord_error)
+    vertices = base.inside(body.vertices)
+    height = float(np.ptp(vertices[:, 2]))
+    corners, sides = _borders(vertices, body.triangles, CHORD_SHARE * strategy.chord_error)
+    corners += height  # a border repeats its first point
     if sides <= 0.0:
         return 0.0, 0.0
-    height = float(np.ptp(base.inside(body.vertices)[:, 2]))
     if strategy.rounds_alone:
         # contours shrink evenly to the middle, so their mean length is half of the border's
         return INNER_FACTOR * length * corners / sides, 2.0 * length * height / sides
@@ -262,14 +264,13 @@ def _plane_size(
     return points, lines + walls * height / sides
 
 
-def _borders(body: Body, base: Base, chord_error: float) -> tuple[float, float]:
-    """Return the points and the length of the borders of all sections of a solid, each integrated over the height.
+def _borders(vertices: Array, triangles: Index, chord_error: float) -> tuple[float, float]:
+    """Return the points and the length of the borders of all sections of a mesh, each integrated over the height.
 
     Points are in mm and lengths in mm^2. An edge of the mesh is a corner of the sections that it crosses, or part of an
     arc that needs fewer points.
     """
-    triangles = np.asarray(body.triangles, dtype=np.intp)
-    vertices = base.inside(body.vertices)
+    triangles = np.asarray(triangles, dtype=np.intp)
     areas = 0.5 * doubled_areas(vertices[triangles])
     edges = Edges(triangles)
     ends, faces = edges.ends[edges.count == 2], edges.faces[edges.count == 2]
@@ -283,8 +284,7 @@ def _borders(body: Body, base: Base, chord_error: float) -> tuple[float, float]:
     )
     wide = sections[faces].sum(axis=1) / np.maximum(high, 1e-300)
     share = np.sqrt(turn * wide / (8.0 * chord_error))
-    starts = float(np.ptp(vertices[:, 2]))  # a border repeats its first point
-    return starts + float(high @ np.minimum(share, 1.0)), float(sections.sum())
+    return float(high @ np.minimum(share, 1.0)), float(sections.sum())
 
 
 def cladding_size(faces: CladFaces, strategy: CladdingParameters) -> Size:

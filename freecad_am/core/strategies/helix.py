@@ -13,12 +13,10 @@ import numpy as np
 
 from ..filling.centre import PlaneCurve
 from ..filling.cover import Cover
-from ..geometry.developable import Plane
-from ..geometry.frames import TURN, unit
-from ..geometry.on_hub import Base
+from ..geometry.frames import TURN, pose, unit
 from ..geometry.walls.patch_wall import PatchWall
 from ..issues import NOTE, InputError, Issue, Text
-from ..layers.chart import axes, count_pieces
+from ..layers.chart import PART, OpenSurface, axes, count_pieces
 from ..layers.parted_chart import borders
 from ..layers.surface import Slice, Wrapped
 from ..parameters.filled import CladdingParameters
@@ -26,12 +24,11 @@ from ..parameters.process import ProcessParameters
 from ..types import Array, Index
 from .solids.filling import Filled
 
-PART = Base("the part", Plane(), np.eye(4))
 ROUNDNESS = 2e-3  # fraction of the radius; maximum deviation of a rim from a circle
 LEAN_RAD = math.radians(1.0)  # maximum angle between a normal and the plane through the axis
 STEPS_PER_BEAD = 16  # steps along the profile in a bead spacing
-LEAST_STEPS = 32
-MOST_STEPS = 20_000
+LEAST_STEPS = 32  # of the straight distance between the rims
+MOST_STEPS = 20_000  # of a profile
 LOOKS_PER_TURN = 64  # samples of a turn in the test for bending
 AZIMUTHS = 64  # azimuths at which the cover is measured
 SAME_TURNS_MM = 1e-6  # mm; shorter profiles between the end turns have no helix between these
@@ -81,7 +78,7 @@ class Profile:
 
 
 @dataclass(frozen=True, eq=False)
-class RevolvedLayer:
+class RevolvedLayer(OpenSurface):
     """Layer on a sheet of revolution, a `LayerSurface`.
 
     On the plane, x is the azimuth times the mean radius and y the arc length of the profile, mm.
@@ -94,16 +91,6 @@ class RevolvedLayer:
     profile: Profile
     sign: float
     distance: float
-
-    @property
-    def period(self) -> None:
-        """None: a helix does not close."""
-        return None
-
-    @property
-    def bends_freely(self) -> bool:
-        """False: the layer bends as the faces do."""
-        return False
 
     def azimuth(self, flat: Array) -> Array:
         """Return the azimuths (n,) of points of the plane, rad."""
@@ -139,25 +126,10 @@ class RevolvedLayer:
         turn = np.arctan2((heading * axis_y).sum(axis=1), (heading * axis_x).sum(axis=1))
         return Wrapped(points, normals, -np.unwrap(turn))
 
-    def heights(self, flat: Array) -> None:
-        """Return None: the layer height is constant."""
-
-    def for_sheet(self, flat: Array, sheet: float) -> RevolvedLayer:
-        """Return this surface, which does not overlap itself on the plane."""
-        return self
-
-    def plane_rotation(self, azimuth: float) -> float:
-        """Return 0: the plane has only one orientation."""
-        return 0.0
-
     def pieces(self, flat: Array, chord_error: float) -> Index:
         """Return the number of pieces of each edge that keeps the chord error, mm."""
         look = TURN * self.profile.mean_radius / LOOKS_PER_TURN
         return count_pieces(lambda points: self.in_part(points)[0], flat, look, chord_error)
-
-    def axes(self, normals: Array) -> tuple[Array, Array]:
-        """Return the part's X and Y projected onto the layer, see `chart.axes`."""
-        return axes(normals)
 
 
 def filled_layers(
@@ -248,10 +220,14 @@ def find_axis(sheet: PatchWall) -> Axis:
     rise = centres[upper] - centres[lower]
     off_axis = float(np.linalg.norm(rise - (rise @ direction) * direction))
     parallel = abs(float(directions[1] @ direction))
-    roundness = max(_roundness(loop, direction) for loop in loops)
+    roundness = max(
+        _roundness(loop - centre, radius, direction)
+        for loop, centre, radius in zip(loops, centres, radii)
+    )
     if off_axis > ROUNDNESS * across or parallel < math.cos(LEAN_RAD) or roundness > ROUNDNESS:
         raise _not_revolved(sheet, "the faces end in rims that are not circles about one axis")
-    frame = _frame(centres[lower], direction)
+    axis_x, axis_y = axes(direction[None])
+    frame = pose(np.column_stack([axis_x[0], axis_y[0], direction]), centres[lower])
     feet, normals = sheet.project(mesh.vertices)
     local = (feet - frame[:3, 3]) @ frame[:3, :3]
     around = unit(np.column_stack([-local[:, 1], local[:, 0], np.zeros(len(local))]))
@@ -271,20 +247,10 @@ def _circle(loop: Array) -> tuple[Array, Array, float]:
     return centre, normal, float(np.linalg.norm(local, axis=1).mean())
 
 
-def _roundness(loop: Array, direction: Array) -> float:
-    """Return the largest deviation of a loop from a circle across a direction, as a share of its radius."""
-    centre, _, radius = _circle(loop)
-    local = loop - centre
+def _roundness(local: Array, radius: float, direction: Array) -> float:
+    """Return the largest deviation of a loop (n, 3) about its centre from a circle, as a share of its radius."""
     out_of_plane = np.abs(local @ direction).max()
     return float(max(np.abs(np.linalg.norm(local, axis=1) - radius).max(), out_of_plane) / radius)
-
-
-def _frame(origin: Array, direction: Array) -> Array:
-    """Return a pose (4, 4) with z along the axis, and x near the part's X, or Y where X is along the axis."""
-    axis_x, axis_y = axes(direction[None])
-    frame = np.eye(4)
-    frame[:3, 0], frame[:3, 1], frame[:3, 2], frame[:3, 3] = axis_x[0], axis_y[0], direction, origin
-    return frame
 
 
 def _not_revolved(sheet: PatchWall, reason: str) -> InputError:
