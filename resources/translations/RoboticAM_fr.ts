@@ -14427,6 +14427,11 @@
         <translation>ce FreeCAD n&apos;a pas le module Import ; utilisez DXF au lieu de STEP</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/widgets/quantity.py"/>
+        <source>this field takes no expression, give a quantity in {0}</source>
+        <translation>ce champ n’accepte pas d’expression, donnez une grandeur en {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>three or more triangles share an edge</source>
         <translation>trois triangles ou plus partagent une arête</translation>

@@ -11,6 +11,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.geometry import frames
+from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.proposed_cell import cell_of
 from freecad_am.core.kinematics.urdf.cell import cell_values
@@ -20,6 +21,7 @@ from freecad_am.core.parameters.cell_records import EXTERNAL
 from freecad_am.core.simulation.table_links import at_rest
 from freecad_am.gui.nodes.cell import resting_point
 from freecad_am.gui.panels import cell as cell_panel
+from freecad_am.gui.panels import preview
 from freecad_am.kdl import KdlArm
 from freecad_am.objects.work.progress import Cancelled
 from tests.core.kinematics import urdf_cells
@@ -441,14 +443,57 @@ def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_prop
 
 
 def test_an_expression_in_a_coordinate_is_left_and_told(person, hand, hemisphere):
+    """A coordinate takes no expression. Its error outlives the proposal for another machine."""
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)
+    coordinate, note = person.field(panel, f"{POINT}X"), person.field(panel, f"{POINT}Note")
+    assert not coordinate.lineEdit().actions()  # no button that starts an expression
     hand.enter(panel, f"{POINT}X", "=500 mm")
+    person.until(lambda: "takes no expression" in note.text(), "the error")
     hand.enter(panel, "Machine", "kuka-kr16-2")
-    note = person.field(panel, f"{POINT}Note")
-    person.until(lambda: note.text().startswith("Kept as entered"), "what is kept", 30)
-    hand.enter(panel, f"{POINT}X", "=600 mm")
-    person.until(lambda: not note.isVisible(), "the note to go with what it was about", 5)
+    proposed = cell_of("kuka-kr16-2")
+    branch = person.field(panel, "Branch")
+    person.until(
+        lambda: branch.currentText().split() == list(proposed.branch), "the branch to be proposed"
+    )
+    wait_for_message(person, panel, "No preview: see the marked field.", 20)
+    assert coordinate.lineEdit().text() == "=500 mm"
+    assert "takes no expression" in note.text() and note.isVisible()
+    hand.enter(panel, f"{POINT}X", "600 mm")
+    person.until(lambda: not note.isVisible(), "the error to go with the entry")
+    wait_for_message(person, panel, "KUKA", 20)
+    person.press("Cancel")
+    person.panel_closed()
+
+
+def test_a_late_error_of_earlier_entries_brings_back_no_field(person, hemisphere, monkeypatch):
+    """The preview of a table with the set-up of a robot marks the set-up, which the panel hides
+    meanwhile."""
+    ended = threading.Event()
+
+    def work_slowly(panel, draft):
+        def compute():
+            time.sleep(1.5)
+            ended.set()
+            raise InputError("BAD_VALUE", "cell.setup", "this set-up suits no table")
+
+        return compute
+
+    monkeypatch.setattr(cell_panel.CellPanel, "_work", work_slowly)
+    person.click("RoboticAM_Cell")
+    panel = person.panel(PANEL)
+    state, setup = person.field(panel, "preview"), person.field(panel, "Setup")
+    person.until(lambda: "Computing" in state.text(), "a preview to run")
+    monkeypatch.setattr(preview.hooks, "carrying", lambda: True)  # no other preview starts
+    person.type(panel, "Machine", "table-xyzbc")
+    person.until(lambda: not setup.isVisible(), "the panel to follow the machine")
+    assert not ended.is_set()
+    person.until(ended.is_set, "the error")
+    person.idle(0.5)
+    assert not setup.isVisible()
+    monkeypatch.undo()
+    wait_for_message(person, panel, "Trunnion", 20)
+    assert not setup.isVisible()
     person.press("Cancel")
     person.panel_closed()
 

@@ -75,7 +75,8 @@ class ProposingPanel(PreviewPanel):
         self.of_machine: dict[tuple[str, str], CellParameters] = {}
         self.before: tuple[str, str] | None = None
         self.put: dict[str, Any] = {}  # values entered by the panel itself
-        self.noted: dict[str, Any] = {}  # field values when a proposal was reported
+        # field value and text when a proposal was reported
+        self.noted: dict[str, tuple[Any, str]] = {}
         super().__init__(title, [], obj, nodes)
         self.enabled = {key: self.places[key][0].widget.isEnabled() for key in OF_ROBOTS}
         if obj is None:
@@ -110,9 +111,8 @@ class ProposingPanel(PreviewPanel):
             return
         self.proposing.cancel()
         self.suiting.cancel()
-        for key in self.noted:
-            self.show_note(key, "")
-        self.noted.clear()
+        for key in list(self.noted):
+            self._clear_note(key)
         if not machine.free or not (arrangement_of(setup).free and arrangement_of(setup).planned):
             return
         folders, proposals, current, tool = (
@@ -167,7 +167,7 @@ class ProposingPanel(PreviewPanel):
         ):
             field = self.places[key][0]
             proposed, holds = field.row.outer(value), self._holds(key)
-            if _alike(holds, proposed):
+            if holds is None or _alike(holds, proposed):  # the note tells what is unreadable
                 continue
             if self._may_put(key, *map(field.row.outer, was)):
                 self._put(
@@ -198,8 +198,14 @@ class ProposingPanel(PreviewPanel):
 
     def _note(self, key: str, text: str) -> None:
         """Show a note on a proposal while the field keeps its value."""
-        self.noted[key] = self._holds(key)
+        self.noted[key] = self._holds(key), text
         self.show_note(key, text, wrong=False)
+
+    def _clear_note(self, key: str) -> None:
+        """Clear the note on a proposal, but no error in its place."""
+        _, text = self.noted.pop(key)
+        if self.notes[key].text() == text:
+            self.show_note(key, "")
 
     # ---- proposals for the current job
 
@@ -276,10 +282,9 @@ class ProposingPanel(PreviewPanel):
     def judge_entries(self) -> None:
         """Clear the note on a proposal once the entry changes."""
         super().judge_entries()
-        for key, value in list(self.noted.items()):
+        for key, (value, _) in list(self.noted.items()):
             if not _alike(self._holds(key), value):
-                del self.noted[key]
-                self.show_note(key, "")
+                self._clear_note(key)
 
     def _carry_out(self) -> bool:
         """Create or change the cell after following the last entry. Report values that the user has
@@ -323,8 +328,6 @@ class ProposingPanel(PreviewPanel):
 def _alike(a: Any, b: Any) -> bool:
     """Whether two poses or two texts are equal as displayed."""
     if isinstance(a, tuple) and isinstance(b, tuple):
-        if any(isinstance(number, str) for number in (*a, *b)):  # an expression
-            return a == b
         return bool(np.allclose(a, b, rtol=0.0, atol=1e-6))
     return isinstance(a, str) and isinstance(b, str) and a.replace(",", " ").split() == b.split()
 
@@ -447,6 +450,12 @@ class CellPanel(ProposingPanel):
         limits.setEditText(text)
 
     # ---- preview
+
+    def _renew(self) -> None:
+        """Follow the last entry before the preview, which would reject the other fields."""
+        self.later.at_once()
+        self.shown = self._entered()
+        super()._renew()
 
     def _entered(self) -> Any:
         toolpath = self._toolpath()

@@ -159,8 +159,11 @@ class PreviewPanel(StagePanel):
                 self._say(tr("Computing the preview."), False)
 
     def _show_result(self, worker: Worker) -> None:
-        """Show the result or the error."""
+        """Show the result or the error, unless the entries have changed meanwhile."""
         try:
+            if self._entered() != self.shown:
+                self.shown = None
+                return
             outcome, drawing = worker.result()
             self._say(self._draw(outcome, drawing), has_errors(outcome.issues))
         except AmError as error:

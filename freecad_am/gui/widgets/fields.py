@@ -379,7 +379,7 @@ def _pose(row: Row, pose: tuple[float, ...]) -> Field:
     grid.setColumnStretch(1, 1)
     quantities = []
     for index, (number, unit, name) in enumerate(zip(pose, _POSE_UNITS, _POSE_NAMES, strict=True)):
-        quantity = QuantityField(number, unit, f"{row.label} {name}")
+        quantity = QuantityField(number, unit, f"{row.label} {name}", can_follow=False)
         quantity.box.setObjectName(f"{row.name}{name}")
         quantity.box.setToolTip(tr("{}: {}").format(name, translated(row.spec.help)))
         grid.addWidget(QtGui.QLabel(name), index, 0)

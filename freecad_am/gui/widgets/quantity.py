@@ -114,14 +114,22 @@ class QuantityField:
     """The field `box` that shows a number in a unit."""
 
     def __init__(
-        self, value: float, unit: str, name: str, expression: str = "", display: str = ""
+        self,
+        value: float,
+        unit: str,
+        name: str,
+        expression: str = "",
+        display: str = "",
+        can_follow: bool = True,
     ) -> None:
         """Create the field.
 
         value: number in the unit. expression: expression that determines the number, '' for none.
-        display: displayed unit, '' for the unit of FreeCAD's unit scheme.
+        display: displayed unit, '' for the unit of FreeCAD's unit scheme. can_follow: whether an
+        expression may determine the number.
         """
         self.unit, self.name, self.display = unit, name, display
+        self.can_follow = can_follow
         self.dimension = App.Units.Quantity(f"1 {unit}").Unit
         self.box = UnitBox(self)
         self.line = self.box.lineEdit()
@@ -130,7 +138,8 @@ class QuantityField:
         self.show(value)
         if expression:
             self.show(expression)
-        self._add_mark()
+        if can_follow:
+            self._add_mark()
         self.make_room()
         connect(self.line, "cursorPositionChanged(int,int)", self._begin_in_sight)
         connect(self.box, "editingFinished()", self._settle)
@@ -179,7 +188,12 @@ class QuantityField:
         text = str(self.line.text())
         if text == self.known_text:
             return self.shown
-        return text.strip() if is_expression(text) else self._number(text)
+        if not is_expression(text):
+            return self._number(text)
+        if self.can_follow:
+            return text.strip()
+        remedy = Text("this field takes no expression, give a quantity in {}", self.shown_unit)
+        raise self._wrong(text, remedy)
 
     def internal_value(self) -> float:
         """Return FreeCAD's raw value in mm, mm/s and so on; NaN for unreadable text and
