@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Regions to fill, and checks of a filling that share no code with it: distances from a tree of dense points."""
+"""Regions to fill, and checks of fills that use distances from a tree of dense points instead of
+the code under test."""
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -56,37 +57,40 @@ SHAPES = {
 }
 
 
-def without_round_ends(points, shares, width):
-    """An open line (n, 2) and its shares of a width, cut back at both ends by as much as round ends add to its area."""
+def trim_round_ends(points, shares, width):
+    """Shorten an open line (n, 2) and its width shares at both ends by the area that round ends
+    add."""
     arc = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
     cut = np.minimum(0.125 * np.pi * width * shares[[0, -1]], 0.49 * arc[-1])
     low, high = cut[0], arc[-1] - cut[1]
-    places = np.r_[low, arc[(arc > low) & (arc < high)], high]
-    line = np.stack([np.interp(places, arc, points[:, k]) for k in (0, 1)], axis=1)
-    return line, np.interp(places, arc, shares)
+    stations = np.r_[low, arc[(arc > low) & (arc < high)], high]
+    line = np.stack([np.interp(stations, arc, points[:, k]) for k in (0, 1)], axis=1)
+    return line, np.interp(stations, arc, shares)
 
 
-def dense(points, closed, step):
-    """Points at most `step` apart along a polyline."""
+def densify(points, closed, step):
+    """Insert points into a polyline until they are at most `step` apart."""
     ends = np.vstack([points, points[:1]]) if closed else points
-    way = np.diff(ends, axis=0)
-    count = np.maximum(np.ceil(np.hypot(*way.T) / step).astype(int), 1)
-    edge = np.repeat(np.arange(len(way)), count)
-    share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
-    return np.vstack([ends[edge] + share[:, None] * way[edge], ends[-1:]])
+    edges = np.diff(ends, axis=0)
+    count = np.maximum(np.ceil(np.hypot(*edges.T) / step).astype(int), 1)
+    edge_index = np.repeat(np.arange(len(edges)), count)
+    share = (np.arange(len(edge_index)) - np.repeat(np.cumsum(count) - count, count)) / count[
+        edge_index
+    ]
+    return np.vstack([ends[edge_index] + share[:, None] * edges[edge_index], ends[-1:]])
 
 
-def tree(curves, step):
-    return cKDTree(np.vstack([dense(points, closed, step) for points, closed in curves]))
+def build_tree(curves, step):
+    return cKDTree(np.vstack([densify(points, closed, step) for points, closed in curves]))
 
 
-def distance(places, points, most):
-    """From the nearest of the places of a tree; infinite from `most` on, which spares the search of far ones."""
-    return places.query(points, distance_upper_bound=most)[0]
+def nearest_distance(tree, points, limit):
+    """Return the distance of points to the tree; infinite beyond `limit`, which saves time."""
+    return tree.query(points, distance_upper_bound=limit)[0]
 
 
-def inside(loops, points):
-    """Even-odd rule."""
+def are_inside(loops, points):
+    """Apply the even-odd rule."""
     odd = np.zeros(len(points), dtype=bool)
     x, y = points.T
     for loop in loops:
@@ -96,10 +100,10 @@ def inside(loops, points):
     return odd
 
 
-def raster(loops, pitch):
-    """Places of a grid over the loops, and which are inside."""
+def make_grid(loops, pitch):
+    """Return the points of a grid over the loops, and a mask of the points inside."""
     low, high = np.vstack(loops).min(axis=0) - 8.0, np.vstack(loops).max(axis=0) + 8.0
     grid = np.stack(
         np.meshgrid(*(np.arange(a, b, pitch) for a, b in zip(low, high))), axis=-1
     ).reshape(-1, 2)
-    return grid, inside(loops, grid)
+    return grid, are_inside(loops, grid)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contours of adaptive width: cover, place, volume and independence of pose, judged by shapely."""
+"""Contours of adaptive width: coverage, position, volume and independence of pose, measured with
+shapely."""
 
 from __future__ import annotations
 
@@ -29,9 +30,7 @@ shapes = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(shapes)
 
 WIDTH = 4.0  # mm
-WIDTH_STEP = (
-    0.05  # of the width; strokes of a bead as wide as on average, so that their errors cancel
-)
+WIDTH_STEP = 0.05  # of the width; strokes have the bead's mean width, so their errors cancel
 LAW = BeadLaw(WIDTH, WIDTH, 0.3, 1.5)
 BEADS = Beads(WIDTH, 0.2 * WIDTH, 2.0, chord_error=0.02)
 
@@ -42,18 +41,19 @@ def region_of(shape):
     return max(regions(loops), key=lambda region: region.area)
 
 
-def swept(curve):
-    """A bead as the union of short strokes as wide as it is there; its area is that of its volume."""
+def sweep(curve):
+    """Union of short strokes, each as wide as the bead; its area equals the bead's volume per
+    height."""
     points, shares = curve.closed_points()
     shares = np.ones(len(points)) if shares is None else shares
     if not curve.closed:
-        points, shares = shapes.without_round_ends(points, shares, WIDTH)
+        points, shares = shapes.trim_round_ends(points, shares, WIDTH)
     counts = np.maximum(1, (np.abs(np.diff(shares)) / WIDTH_STEP).astype(int))
-    places = np.concatenate([k + np.arange(count) / count for k, count in enumerate(counts)])
-    places = np.r_[places, len(points) - 1.0]
-    number = np.arange(len(points))
-    line = np.stack([np.interp(places, number, points[:, k]) for k in (0, 1)], axis=1)
-    widths = WIDTH * np.interp(places, number, shares)
+    positions = np.concatenate([k + np.arange(count) / count for k, count in enumerate(counts)])
+    positions = np.r_[positions, len(points) - 1.0]
+    indices = np.arange(len(points))
+    line = np.stack([np.interp(positions, indices, points[:, k]) for k in (0, 1)], axis=1)
+    widths = WIDTH * np.interp(positions, indices, shares)
     means = 0.5 * (widths[1:] + widths[:-1])
     starts = np.flatnonzero(np.r_[True, np.abs(np.diff(means)) > 1e-9])
     ends = np.r_[starts[1:], len(means)]
@@ -62,23 +62,24 @@ def swept(curve):
     )
 
 
-def faults(shape):
-    """Shares of a shape that beads miss where the narrowest fits, deposit twice, and deposit outside."""
-    return faults_of(shape, swept_beads(shape))
+def find_faults(shape):
+    """Shares of a shape that the beads miss although a bead fits, deposit twice, and deposit
+    outside."""
+    return measure_faults(shape, sweep_beads(shape))
 
 
-def swept_beads(shape):
-    return [swept(curve) for curve in adapt_contours(region_of(shape), BEADS, LAW)]
+def sweep_beads(shape):
+    return [sweep(curve) for curve in adapt_contours(region_of(shape), BEADS, LAW)]
 
 
 @functools.lru_cache(maxsize=40)
-def swept_random(seed):
-    """A random shape and its beads: both tests of random shapes use them."""
+def sweep_random(seed):
+    """Return a random shape and its swept beads; both tests of random shapes use this cache."""
     shape = random_shape(np.random.default_rng(seed))
-    return shape, swept_beads(shape)
+    return shape, sweep_beads(shape)
 
 
-def faults_of(shape, beads):
+def measure_faults(shape, beads):
     union = unary_union(beads)
     reach = 0.5 * LAW.narrowest * WIDTH + 0.02
     wide_enough = shape.buffer(-reach).buffer(reach)
@@ -89,36 +90,38 @@ def faults_of(shape, beads):
     )
 
 
-def wall(count, length=60.0):
+def make_wall(count, length=60.0):
     return box(0.0, 0.0, length, count * WIDTH)
 
 
 @pytest.mark.parametrize("count", [0.5, 1.0, 1.3, 1.5, 1.7, 2.0, 2.2, 2.6, 3.1, 3.5, 4.0])
-def test_walls_of_any_thickness_are_covered(count):
-    missed, twice, outside = faults(wall(count))
-    corners = 4 * (1.0 - 0.25 * math.pi) * WIDTH**2  # most that round beads leave in square corners
-    assert missed * wall(count).area < corners
+def test_beads_cover_walls_of_any_thickness(count):
+    missed, twice, outside = find_faults(make_wall(count))
+    corners = (
+        4 * (1.0 - 0.25 * math.pi) * WIDTH**2
+    )  # maximum that round beads leave open in square corners
+    assert missed * make_wall(count).area < corners
     assert twice < 0.003
     assert outside < 0.001
 
 
-def test_a_wall_of_one_and_a_half_beads_gets_two_of_three_quarters():
-    (ring,) = adapt_contours(region_of(wall(1.5)), BEADS, LAW)
+def test_wall_of_one_and_a_half_beads_gets_two_narrow_beads():
+    (ring,) = adapt_contours(region_of(make_wall(1.5)), BEADS, LAW)
     assert ring.closed
     assert ring.share == pytest.approx(0.75, abs=0.01)
-    assert region_of(wall(1.5)).nearest(ring.points)[1] == pytest.approx(1.5, abs=0.01)
+    assert region_of(make_wall(1.5)).nearest(ring.points)[1] == pytest.approx(1.5, abs=0.01)
 
 
-def test_a_taper_is_followed_to_where_it_is_narrower_than_the_narrowest():
+def test_beads_follow_a_taper_down_to_the_minimum_width():
     length, root = 57.0, 4.0
     fin = Polygon([(0.0, -0.5 * root), (length, 0.0), (0.0, 0.5 * root)])
     curves = adapt_contours(region_of(fin), BEADS, LAW)
     tip = max(float(curve.points[:, 0].max()) for curve in curves)
-    narrow = length * (1.0 - LAW.narrowest * WIDTH / root)  # as wide as the narrowest there
+    narrow = length * (1.0 - LAW.narrowest * WIDTH / root)  # position of the minimum width
     assert narrow - 1.5 < tip < narrow + 1.0
 
 
-def polar(radius, angle):
+def polar_polygon(radius, angle):
     return Polygon(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
 
 
@@ -127,11 +130,11 @@ SHAPES = {
     "disc": Point(0, 0).buffer(13, 32),
     "bracket": Polygon([(0, 0), (60, 0), (60, 12), (14, 12), (14, 50), (0, 50)]),
     "taper": Polygon([(0, 0), (80, 6), (80, 8), (0, 14)]),
-    "star": polar(np.tile([42.0, 17.0], 5), 0.2 * math.pi * np.arange(10) + 0.1),
+    "star": polar_polygon(np.tile([42.0, 17.0], 5), 0.2 * math.pi * np.arange(10) + 0.1),
     "teeth": Point(0, 0)
     .buffer(56, 40)
     .difference(
-        polar(
+        polar_polygon(
             np.tile([40.0, 40.0, 46.0, 46.0], 36),
             math.pi / 18 * np.add.outer(np.arange(36), [0.0, 0.25, 0.5, 0.75]).ravel(),
         )
@@ -144,8 +147,8 @@ SHAPES = {
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_shapes_are_covered_once(name):
-    missed, twice, outside = faults(SHAPES[name])
+def test_beads_cover_shapes_once(name):
+    missed, twice, outside = find_faults(SHAPES[name])
     assert missed < 0.025
     assert twice < 0.015
     assert outside < 0.005
@@ -154,22 +157,24 @@ def test_shapes_are_covered_once(name):
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("turn, mirrored", [(17.0, False), (90.0, False), (211.0, True)])
 def test_beads_move_with_the_shape(name, turn, mirrored):
-    """The same faults, and the same length of beads of the same volume, in another pose."""
+    """In another pose the number of beads and the covered area stay the same."""
 
-    def moved(shape):
+    def move(shape):
         shape = affinity.scale(shape, xfact=-1.0, origin=(0, 0)) if mirrored else shape
         return affinity.translate(affinity.rotate(shape, turn, origin=(0, 0)), 123.4, -56.7)
 
     shape = SHAPES[name]
-    here, there = (adapt_contours(region_of(each), BEADS, LAW) for each in (shape, moved(shape)))
-    assert len(here) == len(there)
-    covered = moved(unary_union([swept(curve) for curve in here]))
-    covered_there = unary_union([swept(curve) for curve in there])
-    assert covered.symmetric_difference(covered_there).area < 1e-3 * shape.area
+    curves, moved_curves = (
+        adapt_contours(region_of(pose_shape), BEADS, LAW) for pose_shape in (shape, move(shape))
+    )
+    assert len(curves) == len(moved_curves)
+    covered = move(unary_union([sweep(curve) for curve in curves]))
+    covered_moved = unary_union([sweep(curve) for curve in moved_curves])
+    assert covered.symmetric_difference(covered_moved).area < 1e-3 * shape.area
 
 
 def random_shape(rng):
-    """Polygons, walls, wedges, strokes as of letters, plates with holes."""
+    """Return a polygon, a wall, a wedge, strokes like letters, or a plate with holes."""
     kind = rng.integers(0, 5)
     if kind == 0:
         angle, radius = np.sort(rng.uniform(0, 2 * np.pi, 9)), rng.uniform(8, 40, 9)
@@ -197,30 +202,33 @@ def random_shape(rng):
     return max(getattr(shape, "geoms", [shape]), key=lambda part: part.area)
 
 
-def test_random_shapes_are_covered_and_beads_stay_inside():
-    figures = np.array([faults_of(*swept_random(seed)) for seed in range(40)])
+def test_beads_cover_random_shapes_and_stay_inside():
+    figures = np.array([measure_faults(*sweep_random(seed)) for seed in range(40)])
     assert (np.median(figures, axis=0) < (0.02, 0.02, 0.002)).all()
     assert (np.percentile(figures, 90, axis=0) < (0.035, 0.05, 0.005)).all()
     assert (figures.max(axis=0) < (0.06, 0.12, 0.01)).all()
 
 
-def difference_when_moved(shape, beads, rng):
-    """Share of a shape that beads cover in one of two poses alone, and how many beads more there are in the other."""
+def compare_poses(shape, beads, rng):
+    """Share of a shape that beads cover in only one of two poses, and the difference in the number
+    of beads."""
     angle, offset = rng.uniform(0.0, 360.0), rng.uniform(-200.0, 200.0, 2)
 
-    def moved(part):
-        return affinity.translate(affinity.rotate(part, angle, origin=(0, 0)), *offset)
+    def move(geometry):
+        return affinity.translate(affinity.rotate(geometry, angle, origin=(0, 0)), *offset)
 
-    there = swept_beads(moved(shape))
-    covered, covered_there = (unary_union(each).buffer(0) for each in (beads, there))
-    apart = moved(covered).buffer(0).symmetric_difference(covered_there).area / shape.area
-    return apart, abs(len(there) - len(beads))
+    moved_beads = sweep_beads(move(shape))
+    covered, covered_moved = (
+        unary_union(pose_beads).buffer(0) for pose_beads in (beads, moved_beads)
+    )
+    difference = move(covered).buffer(0).symmetric_difference(covered_moved).area / shape.area
+    return difference, abs(len(moved_beads) - len(beads))
 
 
 def test_random_shapes_get_the_same_beads_in_any_pose():
     differences = np.array(
         [
-            difference_when_moved(*swept_random(seed), np.random.default_rng(1000 + seed))
+            compare_poses(*sweep_random(seed), np.random.default_rng(1000 + seed))
             for seed in range(24)
         ]
     )
@@ -231,25 +239,24 @@ def test_random_shapes_get_the_same_beads_in_any_pose():
 
 @pytest.mark.long
 @pytest.mark.parametrize("thousand", range(10))
-def test_thousands_of_random_shapes_are_covered_alike_in_five_poses(thousand):
-    """The tails of 10,000 shapes: where strokes cross at a fork, one bead more or less is a matter of the last digit."""
+def test_thousands_of_random_shapes_get_equal_beads_in_five_poses(thousand):
+    """The limits cover 10,000 shapes: where strokes cross at a fork, rounding may add or remove one
+    bead."""
     figures, differences = [], []
     for seed in range(1000 * thousand, 1000 * thousand + 1000):
         shape = random_shape(np.random.default_rng(seed))
-        beads = swept_beads(shape)
-        figures.append(faults_of(shape, beads))
+        beads = sweep_beads(shape)
+        figures.append(measure_faults(shape, beads))
         rng = np.random.default_rng(10**6 + seed)
-        differences.append(
-            np.max([difference_when_moved(shape, beads, rng) for _ in range(4)], axis=0)
-        )
+        differences.append(np.max([compare_poses(shape, beads, rng) for _ in range(4)], axis=0))
     assert (np.median(figures, axis=0) < (0.025, 0.03, 0.002)).all()
     assert (np.percentile(figures, 99, axis=0) < (0.08, 0.2, 0.02)).all()
-    apart, more = np.array(differences).T
-    assert np.mean(more > 0) < 0.01
-    assert np.percentile(apart, 95) < 0.01
+    area_difference, count_difference = np.array(differences).T
+    assert np.mean(count_difference > 0) < 0.01
+    assert np.percentile(area_difference, 95) < 0.01
 
 
-# two plates on a neck, and a plate with a wedge: beads slant across their spokes at the shoulders
+# two plates on a neck, and a plate with a wedge: beads run obliquely across the spokes at the shoulders
 SHOULDERS = {
     "dovetail": [
         (0, 0), (20.18, 0), (20.18, 3.45), (62.73, 4.54),
@@ -274,8 +281,8 @@ def test_no_bead_is_narrower_or_wider_than_allowed(name, spacing, narrowest):
         assert share.min() >= narrowest - 1e-9 and share.max() <= 1.5 + 1e-9
 
 
-def blade(half_angle, radius):
-    """A blade: a wedge to a tip, an arc to a half width of 7 mm, then 50 mm that widen slowly."""
+def make_blade(half_angle, radius):
+    """Return a wedge with a tip, an arc to a half width of 7 mm, then 50 mm that widen slowly."""
     angle, slope = math.radians(half_angle), math.atan(0.02)
     turned = np.linspace(angle, slope, 24)
     arc = radius * np.stack([-np.sin(turned), np.cos(turned)], axis=1)
@@ -290,10 +297,10 @@ def blade(half_angle, radius):
 @pytest.mark.parametrize("half_angle", [32.0, 33.0])
 @pytest.mark.parametrize("radius", [8.0, 12.0])
 def test_both_sides_of_a_blade_get_the_same_number_of_beads(half_angle, radius):
-    """Sides of an axis are walked in opposite directions."""
+    """The algorithm walks along the two sides of an axis in opposite directions."""
     law = BeadLaw(5.0, 5.0, 0.3, 1.5)
     beads = Beads(5.0, 1.0, 2.0, chord_error=0.02)
-    shape = blade(half_angle, radius)
+    shape = make_blade(half_angle, radius)
     curves = adapt_contours(region_of(shape), beads, law)
     for curve in curves:
         if curve.closed:
@@ -305,7 +312,8 @@ def test_both_sides_of_a_blade_get_the_same_number_of_beads(half_angle, radius):
 
 
 def test_spokes_reach_the_medial_axis():
-    """The circle about the end of a spoke is empty and touches the border: by distances of shapely."""
+    """By distances from shapely, the circle around the end of a spoke is empty and touches the
+    border."""
     for seed in range(12):
         shape = random_shape(np.random.default_rng(seed))
         spokes = find_spokes(region_of(shape), 2.0, 0.04, 0.3, 1e3)
@@ -321,58 +329,60 @@ ROUND_END = 0.5 - 0.125 * math.pi  # widths by which a round end without extra a
 
 
 def random_plate(seed):
-    """A random shape with space for lines, their direction, and its beads: zigzags within two contours."""
+    """Return a random shape, the direction of its lines, and its beads: zigzags inside two
+    contours."""
     rng = np.random.default_rng(seed)
     shape = affinity.scale(random_shape(rng), 2.0, 2.0, origin=(0, 0))
     angle = rng.uniform(0.0, math.pi)
-    return shape, angle, zigzags(shape, angle)
+    return shape, angle, fill_with_zigzags(shape, angle)
 
 
-def zigzags(shape, angle):
+def fill_with_zigzags(shape, angle):
     return adapt_lines(region_of(shape), BEADS, LAW, angle, 2, LONGEST_LINK)
 
 
 def test_zigzags_cover_random_shapes_once_and_stay_inside():
-    found = [random_plate(seed) for seed in range(100, 130)]
+    plates = [random_plate(seed) for seed in range(100, 130)]
     figures = np.array(
-        [faults_of(shape, [swept(curve) for curve in curves]) for shape, _, curves in found]
+        [measure_faults(shape, [sweep(curve) for curve in curves]) for shape, _, curves in plates]
     )
     assert (np.median(figures, axis=0) < (0.0125, 0.0125, 0.001)).all()
     assert (np.percentile(figures, 90, axis=0) < (0.025, 0.05, 0.005)).all()
-    assert any(curve.kind == "zigzag" for _, _, curves in found for curve in curves)
+    assert any(curve.kind == "zigzag" for _, _, curves in plates for curve in curves)
 
 
 def test_zigzags_move_with_shape_and_direction():
-    apart = []
+    differences = []
     for seed in range(200, 212):
         shape, angle, curves = random_plate(seed)
         turn = np.random.default_rng(seed).uniform(0.0, 360.0)
 
-        def moved(part, turn=turn):
-            return affinity.translate(affinity.rotate(part, turn, origin=(0, 0)), 60.3, -211.7)
+        def move(geometry, turn=turn):
+            return affinity.translate(affinity.rotate(geometry, turn, origin=(0, 0)), 60.3, -211.7)
 
-        there = zigzags(moved(shape), angle + math.radians(turn))
-        covered, covered_there = (
-            unary_union([swept(curve) for curve in each]).buffer(0) for each in (curves, there)
+        moved_curves = fill_with_zigzags(move(shape), angle + math.radians(turn))
+        covered, covered_moved = (
+            unary_union([sweep(curve) for curve in pose_curves]).buffer(0)
+            for pose_curves in (curves, moved_curves)
         )
-        apart.append(moved(covered).symmetric_difference(covered_there).area / shape.area)
-    assert np.median(apart) < 1e-3
-    assert max(apart) < 0.02
+        differences.append(move(covered).symmetric_difference(covered_moved).area / shape.area)
+    assert np.median(differences) < 1e-3
+    assert max(differences) < 0.02
 
 
 @pytest.mark.parametrize("height", [41.3, 44.0, 46.5, 50.1])
 def test_a_whole_number_of_equal_lines_fits_between_the_walls(height):
-    """Lines share the space inside two walls evenly, and one zigzag links them all."""
+    """Lines share the space inside two walls equally, and one zigzag links them."""
     shape = box(0.0, 0.0, 70.0, height)
-    curves = zigzags(shape, 0.0)
+    curves = fill_with_zigzags(shape, 0.0)
     (zigzag,) = [curve for curve in curves if curve.kind == "zigzag"]
-    room = height - 4.0 * WIDTH
-    count = round(room / WIDTH)
+    inner_height = height - 4.0 * WIDTH
+    count = round(inner_height / WIDTH)
     shares = np.ones(len(zigzag.points)) if zigzag.share is None else zigzag.share
-    assert shares == pytest.approx(room / (count * WIDTH), abs=0.005)
+    assert shares == pytest.approx(inner_height / (count * WIDTH), abs=0.005)
     levels = np.unique(np.round(zigzag.points[:, 1], 2))
-    assert np.diff(levels) == pytest.approx(room / count, abs=0.02)
-    missed, twice, outside = faults_of(shape, [swept(curve) for curve in curves])
+    assert np.diff(levels) == pytest.approx(inner_height / count, abs=0.02)
+    missed, twice, outside = measure_faults(shape, [sweep(curve) for curve in curves])
     # round ends of lines and round outer corners of links
     corners = 4.0 * count * (1.0 - 0.25 * math.pi) * (0.5 * WIDTH) ** 2 / shape.area
     assert missed < corners + 0.002
@@ -382,66 +392,67 @@ def test_a_whole_number_of_equal_lines_fits_between_the_walls(height):
 
 @pytest.mark.parametrize("turn", [5.0, 17.0, 33.0, 60.0])
 def test_links_at_slanted_walls_taper_into_acute_corners(turn):
-    """Nearly all lines are linked, and links neither leave the space inside the walls nor repeat it."""
+    """Nearly all lines are linked; links stay inside the walls and never cover the same area twice."""
     shape = affinity.rotate(box(0.0, 0.0, 120.0, 80.0), turn, origin=(0, 0))
-    curves = zigzags(shape, 0.0)
+    curves = fill_with_zigzags(shape, 0.0)
     linked = [curve for curve in curves if curve.kind == "zigzag"]
     low, high = shape.bounds[1], shape.bounds[3]
     assert len(linked) < 0.5 * (high - low) / WIDTH
     # round ends of lines protrude beyond their area
     inside = shape.buffer(-2.0 * WIDTH + ROUND_END * WIDTH + 0.05, join_style=2)
-    outside = unary_union([swept(curve) for curve in linked]).difference(inside)
+    outside = unary_union([sweep(curve) for curve in linked]).difference(inside)
     assert outside.area < 0.001 * shape.area
-    missed, twice, _ = faults_of(shape, [swept(curve) for curve in curves])
+    missed, twice, _ = measure_faults(shape, [sweep(curve) for curve in curves])
     assert missed < 0.012
     assert twice < 0.012
 
 
-def test_a_line_passes_a_hole_that_enters_its_strip():
-    """The line moves aside and narrows, so that it does not deposit on the wall of the hole."""
+def test_a_line_bends_around_a_hole_in_its_strip():
+    """The line moves sideways and becomes narrower, so it does not deposit on the wall of the hole."""
     hole = Point(40.0, 30.0).buffer(9.0, 64)
     shape = box(0.0, 0.0, 80.0, 60.0).difference(hole)
-    curves = zigzags(shape, 0.0)
-    lines = [swept(curve) for curve in curves if curve.kind == "zigzag"]
+    curves = fill_with_zigzags(shape, 0.0)
+    lines = [sweep(curve) for curve in curves if curve.kind == "zigzag"]
     nominal = fill(region_of(shape), BEADS, "zigzag", 0.0, 2)
-    usual = [swept(curve) for curve in nominal if curve.kind == "zigzag"]
-    wall = hole.buffer(2.0 * WIDTH)
-    on_wall, usually = (
-        sum(line.intersection(wall).area for line in each) for each in (lines, usual)
+    nominal_lines = [sweep(curve) for curve in nominal if curve.kind == "zigzag"]
+    make_wall = hole.buffer(2.0 * WIDTH)
+    on_wall, nominal_on_wall = (
+        sum(line.intersection(make_wall).area for line in swept_lines)
+        for swept_lines in (lines, nominal_lines)
     )
-    assert on_wall < 0.5 * usually
-    missed, twice, _ = faults_of(shape, [swept(curve) for curve in curves])
+    assert on_wall < 0.5 * nominal_on_wall
+    missed, twice, _ = measure_faults(shape, [sweep(curve) for curve in curves])
     assert missed < 0.015
     assert twice < 0.01
 
 
 @pytest.mark.parametrize("overlap", [0.0, 0.1, 0.25])
-def test_lines_reach_into_their_walls_by_the_given_share(overlap):
+def test_lines_overlap_their_walls_by_the_chosen_share(overlap):
     beads = Beads(WIDTH, 0.2 * WIDTH, 2.0, chord_error=0.02, overlap=overlap)
     curves = adapt_lines(region_of(box(0, 0, 80, 60)), beads, LAW, 0.0, 2, LONGEST_LINK)
-    zigzag = unary_union([swept(curve) for curve in curves if curve.kind == "zigzag"])
-    left, _, right, _ = zigzag.intersection(box(0, 12, 80, 48)).bounds  # links alone
-    assert left == pytest.approx((2.0 - overlap) * WIDTH, abs=0.05)
-    assert right == pytest.approx(80.0 - (2.0 - overlap) * WIDTH, abs=0.05)
+    zigzag = unary_union([sweep(curve) for curve in curves if curve.kind == "zigzag"])
+    low_x, _, high_x, _ = zigzag.intersection(box(0, 12, 80, 48)).bounds  # only links
+    assert low_x == pytest.approx((2.0 - overlap) * WIDTH, abs=0.05)
+    assert high_x == pytest.approx(80.0 - (2.0 - overlap) * WIDTH, abs=0.05)
     assert zigzag.bounds[1] == pytest.approx((2.0 - overlap) * WIDTH, abs=0.05)
     assert zigzag.bounds[3] == pytest.approx(60.0 - (2.0 - overlap) * WIDTH, abs=0.05)
 
 
-def test_thin_places_inside_walls_are_filled_with_contours():
-    curves = zigzags(box(0.0, 0.0, 90.0, 21.0), 0.7)
+def test_contours_fill_thin_regions_inside_walls():
+    curves = fill_with_zigzags(box(0.0, 0.0, 90.0, 21.0), 0.7)
     assert {curve.kind for curve in curves} == {"contour", "centre"}
 
 
-def test_lines_overlap_their_walls_as_neighbours_overlap_by_default():
+def test_lines_overlap_walls_and_neighbours_equally_by_default():
     spacing, width = 4.0, 5.0
     beads = Beads(spacing, 0.2 * spacing, 2.0, chord_error=0.02, width=width)
     law = BeadLaw(width, spacing, 0.3, 1.5)
-    room = 10 * spacing  # between the centrelines of the outermost lines
+    inner_height = 10 * spacing  # between the centrelines of the outermost lines
     inset = 0.5 * width + 2.0 * spacing
-    shape = box(0.0, 0.0, 90.0, room + 2.0 * inset)
+    shape = box(0.0, 0.0, 90.0, inner_height + 2.0 * inset)
     curves = adapt_lines(region_of(shape), beads, law, 0.0, 2, LONGEST_LINK)
     (zigzag,) = [curve for curve in curves if curve.kind == "zigzag"]
     levels = np.unique(np.round(zigzag.points[:, 1], 2))
     assert levels == pytest.approx(inset + spacing * np.arange(11), abs=0.03)
-    links = zigzag.points[1:-1, 0]  # as far from the last wall as lines next to it
+    links = zigzag.points[1:-1, 0]  # same distance from the last wall as adjacent lines
     assert np.unique(np.round(links, 1)) == pytest.approx([inset, 90.0 - inset], abs=0.05)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Equal regions of a layer are filled once, wherever they are, with the beads that each would get alone."""
+"""Equal regions of a layer are filled once and get the beads that each region would get separately."""
 
 import numpy as np
 import pytest
@@ -18,8 +18,10 @@ from freecad_am.core.strategies.solids.filling import Pictures
 
 SPACING = 2.0  # mm
 BLOCK = SPACING * np.array([[0.0, 0.0], [7.3, 0.4], [6.1, 4.9], [0.8, 3.7]])
-NARROW = SPACING * np.array([[0.0, 0.0], [7.0, 0.0], [7.0, 0.2]])  # with a place without a bead
-PLACES = np.array([[0.0, 0.0], [40.0, 3.0], [-31.7, 55.1], [1000.3, -777.7]])
+NARROW = SPACING * np.array(
+    [[0.0, 0.0], [7.0, 0.0], [7.0, 0.2]]
+)  # its tip is too narrow for a bead
+OFFSETS = np.array([[0.0, 0.0], [40.0, 3.0], [-31.7, 55.1], [1000.3, -777.7]])
 
 
 TILTED = np.array(
@@ -28,67 +30,81 @@ TILTED = np.array(
 BASE = Base("a plane", Plane(), TILTED)
 
 
-def layer_of(loops, number=0):
+def make_layer(loops, number=0):
     return Slice(number, BASE, PlaneLayer(0.7 * number), regions(loops))
 
 
 @pytest.fixture
-def fills(monkeypatch):
-    """One entry for each region that is filled anew."""
+def fill_calls(monkeypatch):
+    """Return a list with one entry for each region that is filled again."""
     calls, fill = [], filling.fill
-    monkeypatch.setattr(filling, "fill", lambda *given: calls.append(given) or fill(*given))
+    monkeypatch.setattr(
+        filling, "fill", lambda *arguments: calls.append(arguments) or fill(*arguments)
+    )
     return calls
 
 
 @pytest.mark.parametrize("fill", ["contours", "zigzag", "spiral"])
 @pytest.mark.parametrize("shape", [BLOCK, NARROW], ids=["block", "narrow"])
-def test_islands_of_one_shape_are_filled_once(fills, fill, shape):
+def test_equal_islands_are_filled_once(fill_calls, fill, shape):
     strategy = SolidParameters(bead_spacing=SPACING, fill=fill, narrowest=0.3, widths="adaptive")
     process = ProcessParameters()
     together = Pictures(strategy, process).filled(
-        layer_of([shape + at for at in PLACES]), "islands"
+        make_layer([shape + offset for offset in OFFSETS]), "islands"
     )
-    assert len(fills) == 1
-    alone = [Pictures(strategy, process).filled(layer_of([shape + at]), "alone") for at in PLACES]
-    alone.sort(key=lambda picture: picture.curves[0].points[:, 0].min())
-    curves = [curve for picture in alone for curve in picture.curves]
-    assert len(together.curves) == len(curves) and len(together.islands) == len(PLACES)
-    for curve, other in zip(together.curves, curves):
-        assert (curve.kind, curve.ring, curve.closed) == (other.kind, other.ring, other.closed)
-        assert np.abs(curve.points - other.points).max() < 1e-6  # mm
-    bare = np.array([place.point for place in together.bare])
-    expected = np.array([place.point for picture in alone for place in picture.bare])
+    assert len(fill_calls) == 1
+    single_layers = [
+        Pictures(strategy, process).filled(make_layer([shape + offset]), "alone")
+        for offset in OFFSETS
+    ]
+    single_layers.sort(key=lambda layer: layer.curves[0].points[:, 0].min())
+    curves = [curve for layer in single_layers for curve in layer.curves]
+    assert len(together.curves) == len(curves) and len(together.islands) == len(OFFSETS)
+    for curve, single_curve in zip(together.curves, curves):
+        assert (curve.kind, curve.ring, curve.closed) == (
+            single_curve.kind,
+            single_curve.ring,
+            single_curve.closed,
+        )
+        assert np.abs(curve.points - single_curve.points).max() < 1e-6  # mm
+    bare = np.array([bare_place.point for bare_place in together.bare])
+    expected = np.array([bare_place.point for layer in single_layers for bare_place in layer.bare])
     assert bare.shape == expected.shape and np.abs(bare - expected).max(initial=0.0) < 1e-6
 
 
-def test_islands_that_are_turned_or_mirrored_are_filled_each(fills):
+def test_rotated_and_mirrored_islands_are_filled_separately(fill_calls):
     strategy = SolidParameters(bead_spacing=SPACING)
-    turned, mirrored = 50.0 - BLOCK, (BLOCK * [-1.0, 1.0] - 50.0)[::-1]
-    Pictures(strategy, ProcessParameters()).filled(layer_of([BLOCK, turned, mirrored]), "islands")
-    assert len(fills) == 3
+    rotated, mirrored = 50.0 - BLOCK, (BLOCK * [-1.0, 1.0] - 50.0)[::-1]
+    Pictures(strategy, ProcessParameters()).filled(
+        make_layer([BLOCK, rotated, mirrored]), "islands"
+    )
+    assert len(fill_calls) == 3
 
 
-def test_sparse_patterns_have_fixed_places(fills):
+def test_sparse_patterns_stay_fixed_in_the_layer(fill_calls):
     """The lines of neighbouring islands continue each other."""
     strategy = SolidParameters(bead_spacing=SPACING, fill="lines", fill_density=0.3)
-    islands = layer_of([BLOCK + at for at in PLACES])
+    islands = make_layer([BLOCK + offset for offset in OFFSETS])
     Pictures(strategy, ProcessParameters()).filled(islands, "islands")
-    assert len(fills) == len(PLACES)
+    assert len(fill_calls) == len(OFFSETS)
 
 
 @pytest.mark.parametrize("direction", ["counter-clockwise", "alternate"])
-def test_beads_of_equal_layers_are_made_once_and_moved(monkeypatch, direction):
-    """The lowest layer has a class of its own; with directions that alternate there are two kinds of the others."""
+def test_beads_of_equal_layers_are_computed_once_and_moved(monkeypatch, direction):
+    """The lowest layer is computed separately; alternating directions give two variants of the
+    other layers."""
     calls = []
-    monkeypatch.setattr(beads, "bead_of", lambda *given: calls.append(given) or bead_of(*given))
+    monkeypatch.setattr(
+        beads, "bead_of", lambda *arguments: calls.append(arguments) or bead_of(*arguments)
+    )
     strategy = SolidParameters(bead_spacing=SPACING, widths="adaptive")
     parameters = strategy, BuildDirectionParameters(), ProcessParameters(direction=direction), None
     pictures, maker = Pictures(strategy, parameters[2]), BeadMaker(*parameters)
     for number in range(6):
-        layer = layer_of([BLOCK, BLOCK + PLACES[1]], number)
+        layer = make_layer([BLOCK, BLOCK + OFFSETS[1]], number)
         curves = pictures.filled(layer, "islands").curves
         for curve in curves:
-            made, alone = maker.bead_of(curve, layer).bead, bead_of(curve, layer, *parameters)
-            assert np.abs(made.points - alone.bead.points).max() < 1e-12
-            assert made.role == alone.bead.role and (made.speed == alone.bead.speed).all()
+            bead, reference = maker.bead_of(curve, layer).bead, bead_of(curve, layer, *parameters)
+            assert np.abs(bead.points - reference.bead.points).max() < 1e-12
+            assert bead.role == reference.bead.role and (bead.speed == reference.bead.speed).all()
     assert len(calls) == (3 if direction == "alternate" else 2) * len(curves)

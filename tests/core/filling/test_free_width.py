@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads as wide as their room, measured on a raster swept by discs of their widths; starts that keep apart."""
+"""Beads that adapt their width to the available space, measured on a raster; starts that keep their
+distance."""
 
 import importlib.util
 from dataclasses import replace
@@ -23,19 +24,21 @@ _spec = importlib.util.spec_from_file_location(
 shapes = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(shapes)
 
-S = 5.0
-BEADS = Beads(S, 1.0, 2.0, chord_error=0.02)
+SPACING = 5.0
+BEADS = Beads(SPACING, 1.0, 2.0, chord_error=0.02)
 STEP = 0.1
 
 
-def adapted(region, pattern, least, most):
-    beads, share = fit_beads(region, BEADS, least, most)
-    return [*share_widths(region, fill(region, beads, pattern), beads, share, least, most)], share
+def fit_and_share(region, pattern, min_share, max_share):
+    beads, share = fit_beads(region, BEADS, min_share, max_share)
+    return [
+        *share_widths(region, fill(region, beads, pattern), beads, share, min_share, max_share)
+    ], share
 
 
-def places(curves):
-    """Dense places of beads and their widths there."""
-    found = []
+def sample_widths(curves):
+    """Dense points of beads and the bead widths there."""
+    samples = []
     for curve in curves:
         share = np.ones(len(curve.points)) if curve.share is None else curve.share
         ends = np.c_[curve.points, share]
@@ -44,145 +47,156 @@ def places(curves):
             t = np.linspace(0.0, 1.0, max(int(np.ceil(np.hypot(*(b - a)[:2]) / STEP)), 1) + 1)[
                 :, None
             ]
-            found.append(a + t * (b - a))
-    rows = np.vstack(found)
-    return rows[:, :2], S * rows[:, 2]
+            samples.append(a + t * (b - a))
+    rows = np.vstack(samples)
+    return rows[:, :2], SPACING * rows[:, 2]
 
 
-def swept(curves, grid):
-    """Which places of a grid lie within half of a bead's width there, of any bead: the nearest may be a narrow one that does
-    not reach a place which a wider one does."""
+def sweep(curves, grid):
+    """Mask of grid points within half a bead width of a bead; checks each bead, because the nearest
+    one may be too narrow to reach a point."""
     covered = np.zeros(len(grid), dtype=bool)
     for curve in curves:
-        covered |= swept_by(curve, grid)
+        covered |= sweep_bead(curve, grid)
     return covered
 
 
-def swept_by(curve, grid):
-    points, width = places([curve])
+def sweep_bead(curve, grid):
+    points, width = sample_widths([curve])
     covered = np.zeros(len(grid), dtype=bool)
-    for low in np.arange(0.0, width.max() + 0.25, 0.25):
-        some = (width >= low) & (width < low + 0.25)
-        if some.any():
-            away, which = cKDTree(points[some]).query(grid)
-            covered |= away <= 0.5 * width[some][which] + 0.01
+    for band_start in np.arange(0.0, width.max() + 0.25, 0.25):
+        in_band = (width >= band_start) & (width < band_start + 0.25)
+        if in_band.any():
+            distances, nearest = cKDTree(points[in_band]).query(grid)
+            covered |= distances <= 0.5 * width[in_band][nearest] + 0.01
     return covered
 
 
-def without_round_ends(curve):
-    """A bead; an open one without what round ends add to its area."""
+def trim_round_ends(curve):
+    """Return the bead; if it is open, without the length that round ends add."""
     if curve.closed:
         return curve
     shares = np.ones(len(curve.points)) if curve.share is None else curve.share
-    points, shares = shapes.without_round_ends(curve.points, shares, 2.0 * BEADS.inset)
+    points, shares = shapes.trim_round_ends(curve.points, shares, 2.0 * BEADS.inset)
     return replace(curve, points=points, share=shares)
 
 
-def bar(thick, length=90.0):
-    return shapes.polygon((0, 0), (length, 0), (length, thick), (0, thick))
+def make_bar(thickness, length=90.0):
+    return shapes.polygon((0, 0), (length, 0), (length, thickness), (0, thickness))
 
 
 @pytest.mark.parametrize("pattern", ["contours", "connected", "spiral"])
-@pytest.mark.parametrize("thick", [7.0, 8.5, 12.5, 17.0, 22.0, 23.4])
+@pytest.mark.parametrize("thickness", [7.0, 8.5, 12.5, 17.0, 22.0, 23.4])
 @pytest.mark.always
-def test_bars_of_any_thickness_are_filled_evenly(thick, pattern):
-    loops = bar(thick)
+def test_beads_share_bars_of_any_thickness_evenly(thickness, pattern):
+    loops = make_bar(thickness)
     (region,) = regions(loops)
-    curves, share = adapted(region, pattern, 0.7, 1.4)
-    count = round(thick / (share * S))
-    assert share * S * count == pytest.approx(thick, rel=0.01) and 0.7 <= share <= 1.41
-    grid = shapes.raster(loops, 0.25)[0] + np.array([0.1, 0.07])  # none of it on the border
-    within = shapes.inside(loops, grid)
-    covered = swept(curves, grid)
-    half = 0.5 * share * S  # what a round bead that runs into a corner of the bar can reach of it
-    away = np.maximum(np.abs(grid - (45.0, 0.5 * thick)) - (45.0 - half, 0.5 * thick - half), 0.0)
-    reach = within & (np.hypot(*away.T) <= half)
-    # the corners of contours inside stay open, and those beside the ends of a bead in the middle: none is as wide as the gap
+    curves, share = fit_and_share(region, pattern, 0.7, 1.4)
+    count = round(thickness / (share * SPACING))
+    assert share * SPACING * count == pytest.approx(thickness, rel=0.01) and 0.7 <= share <= 1.41
+    grid = shapes.make_grid(loops, 0.25)[0] + np.array([0.1, 0.07])  # no grid point on the border
+    within = shapes.are_inside(loops, grid)
+    covered = sweep(curves, grid)
+    half = 0.5 * share * SPACING  # reach of a round bead in a corner of the bar
+    core_distance = np.maximum(
+        np.abs(grid - (45.0, 0.5 * thickness)) - (45.0 - half, 0.5 * thickness - half), 0.0
+    )
+    reach = within & (np.hypot(*core_distance.T) <= half)
+    # inner corners of contours stay open, also next to the ends of a middle bead: all smaller than the gap
     assert (covered & reach).sum() >= 0.99 * reach.sum()
     assert (covered & ~within).sum() <= 0.01 * within.sum()
     if pattern == "contours":
         area = sum(
-            (np.hypot(*np.diff(line, axis=0).T) * 0.5 * (wide[1:] + wide[:-1])).sum()
-            for line, wide in (
+            (np.hypot(*np.diff(line, axis=0).T) * 0.5 * (widths[1:] + widths[:-1])).sum()
+            for line, widths in (
                 (
-                    np.vstack([c.points, c.points[:1]]) if c.closed else c.points,
-                    S * (np.r_[c.share, c.share[:1]] if c.closed else c.share),
+                    np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points,
+                    SPACING
+                    * (np.r_[curve.share, curve.share[:1]] if curve.closed else curve.share),
                 )
-                for c in (c if c.share is not None else shares_of_one(c) for c in curves)
+                for curve in (
+                    curve if curve.share is not None else add_unit_shares(curve) for curve in curves
+                )
             )
         )
-        assert area == pytest.approx(thick * 90.0, rel=0.08), "what is laid is what the bar takes"
+        assert area == pytest.approx(thickness * 90.0, rel=0.08), (
+            "what is laid is what the bar takes"
+        )
 
 
-def shares_of_one(curve):
+def add_unit_shares(curve):
     import dataclasses
 
     return dataclasses.replace(curve, share=np.ones(len(curve.points)))
 
 
-def test_a_wedge_narrower_than_a_bead_is_as_wide_as_its_bead():
+def test_the_bead_of_a_narrow_wedge_is_as_wide_as_the_wedge():
     (region,) = regions(shapes.polygon((0, 0), (80, 0), (80, 4.9), (0, 3.0)))
-    (curve,) = adapted(region, "contours", 0.5, 1.5)[0]
+    (curve,) = fit_and_share(region, "contours", 0.5, 1.5)[0]
     x, share = curve.points[:, 0], curve.share
     inner = (x > 4.0) & (x < 76.0)
-    assert S * share[inner] == pytest.approx(3.0 + 1.9 * x[inner] / 80.0, rel=0.02)
+    assert SPACING * share[inner] == pytest.approx(3.0 + 1.9 * x[inner] / 80.0, rel=0.02)
 
 
-def test_the_usual_range_changes_nothing():
+def test_the_nominal_range_changes_nothing():
     for name in ("comb", "wavy 1"):
         (region,) = regions(shapes.SHAPES[name])
-        usual = fill(region, BEADS)
-        curves, share = adapted(region, "contours", 1.0, 1.0)
+        nominal = fill(region, BEADS)
+        curves, share = fit_and_share(region, "contours", 1.0, 1.0)
         assert share == 1.0 and all(
             a is b or (np.array_equal(a.points, b.points) and b.share is None)
-            for a, b in zip(usual, curves, strict=True)
+            for a, b in zip(nominal, curves, strict=True)
         )
-    # nothing within the range: the usual spacing, and gaps in the middle as wide as they are
-    (region,) = regions(bar(8.0))
-    curves, share = adapted(region, "contours", 0.95, 1.05)
+    # no spacing of the range fits: nominal spacing, and the gap in the middle stays
+    (region,) = regions(make_bar(8.0))
+    curves, share = fit_and_share(region, "contours", 0.95, 1.05)
     assert share == 1.0
 
 
 @pytest.mark.parametrize("name", ["annulus", "blade", "wavy 2", "L"])
-def test_spread_starts_keep_apart_and_aligned_ones_do_not(name):
-    def starts(spread):
-        found = {}
+def test_spread_starts_keep_their_distance(name):
+    def list_starts(spread):
+        rings_by_key = {}
         for layer in range(6):
-            beads = Beads(S, 1.0, 2.0, chord_error=0.02, spread=layer * OVER if spread else None)
+            beads = Beads(
+                SPACING, 1.0, 2.0, chord_error=0.02, spread=layer * OVER if spread else None
+            )
             (region,) = regions(
                 shapes.SHAPES[name][:1]
-            )  # without holes there is one contour of each number, or few
+            )  # without holes most ring numbers have one contour
             for curve in fill(region, beads):
                 if curve.kind == "contour":
-                    found.setdefault((layer, curve.ring), []).append(curve.points)
-        return {key: rings[0] for key, rings in found.items() if len(rings) == 1}
+                    rings_by_key.setdefault((layer, curve.ring), []).append(curve.points)
+        return {key: rings[0] for key, rings in rings_by_key.items() if len(rings) == 1}
 
-    def share(a, b):
-        """How far apart two starts are: along the first ring from its start to where the other's is next, of all of it."""
-        at = shapes.dense(a, True, 0.1)
-        near = np.argmin(np.hypot(*(at - b[0]).T)) / len(at)
-        return min(near, 1.0 - near)
+    def measure_offset(a, b):
+        """Distance of two starts as a share of the first ring's length."""
+        points = shapes.densify(a, True, 0.1)
+        position = np.argmin(np.hypot(*(points - b[0]).T)) / len(points)
+        return min(position, 1.0 - position)
 
-    def least(found):
+    def list_offsets(rings_by_key):
         pairs = [
             (key, (key[0] + i, key[1] + j))
-            for key in found
+            for key in rings_by_key
             for i, j in ((0, 1), (1, 0), (1, 1), (1, -1))
         ]
-        return [share(found[a], found[b]) for a, b in pairs if b in found]
+        return [
+            measure_offset(rings_by_key[a], rings_by_key[b]) for a, b in pairs if b in rings_by_key
+        ]
 
-    assert max(least(starts(False))) < 0.12 or name in ("wavy 2", "L", "blade")
-    apart = least(starts(True))
-    # where contours differ in shape from the ones outside of them, so do the shares of their length
+    assert max(list_offsets(list_starts(False))) < 0.12 or name in ("wavy 2", "L", "blade")
+    offsets = list_offsets(list_starts(True))
+    # if a contour's shape differs from the outer one, so do the shares of its length
     assert (
-        len(apart) > 8
-        and np.median(apart) > 0.2
-        and min(apart) > (0.02 if name in ("wavy 2", "L") else 0.08)
+        len(offsets) > 8
+        and np.median(offsets) > 0.2
+        and min(offsets) > (0.02 if name in ("wavy 2", "L") else 0.08)
     )
 
 
 @pytest.mark.parametrize(
-    "given,told",
+    "spacing_range,message",
     [
         ((0.2, 1.4), "20 % is out of range; give at least 30 % and at most 200 %"),
         ((1.4, 0.7), "140 % to 70 % is not a range; give the smaller percentage first"),
@@ -194,32 +208,38 @@ def test_spread_starts_keep_apart_and_aligned_ones_do_not(name):
         ((float("nan"), 1.2), "nan is not a number"),
     ],
 )
-def test_ranges_that_are_none_are_told(given, told):
-    with pytest.raises(InputError, match="spacing_range") as refused:
-        DevelopableParameters(spacing_range=given)
-    assert told in str(refused.value)
+def test_invalid_ranges_are_rejected(spacing_range, message):
+    with pytest.raises(InputError, match="spacing_range") as caught:
+        DevelopableParameters(spacing_range=spacing_range)
+    assert message in str(caught.value)
 
 
-@pytest.mark.parametrize("thick", [7.0, 12.5, 22.0])
-def test_beads_cover_as_much_as_they_are_wide(thick):
-    """Bars in beads wider or narrower than usual: against what discs of their widths sweep, of open beads less the lengths of
-    their round ends."""
-    loops = bar(thick, 50.0)
+@pytest.mark.parametrize("thickness", [7.0, 12.5, 22.0])
+def test_beads_cover_their_width(thickness):
+    """Bars with beads wider or narrower than nominal, compared with the area that discs of these
+    widths sweep; round ends of open beads are trimmed."""
+    loops = make_bar(thickness, 50.0)
     (region,) = regions(loops)
-    curves, share = adapted(region, "contours", 0.7, 1.4)
-    grid = shapes.raster(loops, 0.25)[0] + np.array([0.1, 0.07])
-    trimmed = [without_round_ends(curve) for curve in curves]
-    within, swept_over = shapes.inside(loops, grid), swept(trimmed, grid)
-    found = measure_cover(region, curves, BEADS)
-    pixel, near = 0.25**2, 0.06 * 2.0 * (50.0 + thick)  # a quarter of a place along the border
-    assert found.area == pytest.approx(region.area) and found.covered == pytest.approx(
-        pixel * swept_over.sum(), abs=near
+    curves, share = fit_and_share(region, "contours", 0.7, 1.4)
+    grid = shapes.make_grid(loops, 0.25)[0] + np.array([0.1, 0.07])
+    trimmed = [trim_round_ends(curve) for curve in curves]
+    within, swept_over = shapes.are_inside(loops, grid), sweep(trimmed, grid)
+    cover = measure_cover(region, curves, BEADS)
+    pixel, tolerance = (
+        0.25**2,
+        0.06 * 2.0 * (50.0 + thickness),
+    )  # a quarter of a grid cell along the border
+    assert cover.area == pytest.approx(region.area) and cover.covered == pytest.approx(
+        pixel * swept_over.sum(), abs=tolerance
     )
-    assert found.missed == pytest.approx(pixel * (within & ~swept_over).sum(), abs=near)
-    assert found.outside == pytest.approx(pixel * (swept_over & ~within).sum(), abs=near)
-    usual = measure_cover(region, [replace(curve, share=None) for curve in curves], BEADS)
+    assert cover.missed == pytest.approx(pixel * (within & ~swept_over).sum(), abs=tolerance)
+    assert cover.outside == pytest.approx(pixel * (swept_over & ~within).sum(), abs=tolerance)
+    nominal_cover = measure_cover(region, [replace(curve, share=None) for curve in curves], BEADS)
     if abs(share - 1.0) > 0.1:
-        assert abs(usual.missed - found.missed) + abs(usual.outside - found.outside) > 2.0 * near
+        assert (
+            abs(nominal_cover.missed - cover.missed) + abs(nominal_cover.outside - cover.outside)
+            > 2.0 * tolerance
+        )
 
 
 def ring_loops(thickness, outer=40.0):
@@ -230,14 +250,14 @@ def ring_loops(thickness, outer=40.0):
 
 @pytest.mark.parametrize("thickness", [4.4, 5.0, 6.0, 7.2])
 @pytest.mark.parametrize("turn", [0.0, 0.4])
-def test_narrow_beads_lie_half_their_own_width_from_the_border(thickness, turn):
-    """A wall of 1.1 to 1.8 beads gets two beads, each of half its thickness, in the middle of its half."""
+def test_narrow_beads_keep_half_their_width_from_the_border(thickness, turn):
+    """A wall of 1.1 to 1.8 beads gets two beads, each half as wide as the wall."""
     rotation = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     (region,) = regions([loop @ rotation + [11.0, -7.0] for loop in ring_loops(thickness)])
     beads = Beads(4.0, 0.8, 2.0, chord_error=0.002, width=4.0)
     curves = narrow_beads(fill(region, beads), beads, 0.0, 0.3)
     assert len(curves) == 2
-    radii = sorted(float(np.hypot(*(c.points - [11.0, -7.0]).T).mean()) for c in curves)
+    radii = sorted(float(np.hypot(*(curve.points - [11.0, -7.0]).T).mean()) for curve in curves)
     assert radii == pytest.approx([40.0 - 0.75 * thickness, 40.0 - 0.25 * thickness], abs=0.02)
     for curve in curves:
         assert curve.share * 4.0 == pytest.approx(
@@ -247,7 +267,7 @@ def test_narrow_beads_lie_half_their_own_width_from_the_border(thickness, turn):
     assert cover.missed < 0.01 * cover.area and cover.outside < 0.01 * cover.area
 
 
-def test_narrow_lines_lie_half_their_own_width_from_the_border():
+def test_narrow_lines_keep_half_their_width_from_the_border():
     (region,) = regions([np.array([(0, 0), (60, 0), (60, 6), (0, 6)], dtype=float)])
     beads = Beads(4.0, 0.8, 2.0, chord_error=0.002, width=4.0)
     curves = narrow_beads(fill(region, beads, "lines"), beads, 0.0, 0.3)
@@ -255,10 +275,10 @@ def test_narrow_lines_lie_half_their_own_width_from_the_border():
     assert heights == pytest.approx([1.5, 4.5], abs=0.02)
 
 
-def test_a_round_bead_beside_a_neck_stays_round():
-    """Two holes near each other: beads narrow in the neck between them, and neither kinks nor waves lead to it."""
-    around = np.linspace(0.0, 2.0 * np.pi, 240, endpoint=False)
-    circle = 10.0 * np.stack([np.cos(around), np.sin(around)], axis=1)
+def test_a_round_bead_next_to_a_neck_stays_round():
+    """Beads narrow in the neck between two holes, without kinks or waves next to it."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 240, endpoint=False)
+    circle = 10.0 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     holes = [circle[::-1] + (x, 0.0) for x in (-14.0, 14.0)]
     plate = np.array([(-40.0, -25.0), (40.0, -25.0), (40.0, 25.0), (-40.0, 25.0)])
     (region,) = regions([plate, *holes])
@@ -271,6 +291,6 @@ def test_a_round_bead_beside_a_neck_stays_round():
     assert len(rings) == 2
     for ring in rings:
         assert ring.share.min() < 0.9
-        way = np.diff(np.vstack([ring.points, ring.points[:2]]), axis=0)
-        turns = np.unwrap(np.arctan2(way[:, 1], way[:, 0]))
+        edges = np.diff(np.vstack([ring.points, ring.points[:2]]), axis=0)
+        turns = np.unwrap(np.arctan2(edges[:, 1], edges[:, 0]))
         assert np.abs(np.diff(turns)).max() < 0.1  # rad between chords of 1 mm

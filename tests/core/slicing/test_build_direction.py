@@ -7,7 +7,7 @@ import pytest
 from freecad_am.core.slicing import revolution as directions
 
 
-def some_builds(count=200):
+def random_directions(count=200):
     angle = np.random.default_rng(3).uniform(0.05, np.pi - 0.05, count)
     return np.stack([np.sin(angle), np.zeros(count), np.cos(angle)], axis=1), angle
 
@@ -28,7 +28,7 @@ def test_lead_turns_forward_and_tilt_outward(rising):
 
 @pytest.mark.parametrize("rising", [True, False])
 def test_lead_and_tilt_keep_their_angles_on_any_wall(rising):
-    build, _ = some_builds()
+    build, _ = random_directions()
     tool = directions.lean_tool(build, 0.3, 0.2, rising)
     assert np.linalg.norm(tool, axis=1) == pytest.approx(np.ones(len(build)), abs=1e-14)
     assert (tool * build).sum(axis=1) == pytest.approx(
@@ -40,7 +40,7 @@ def test_lead_and_tilt_keep_their_angles_on_any_wall(rising):
 
 
 def test_tilt_back_turns_towards_the_axis_and_stops_there():
-    build, angle = some_builds()
+    build, angle = random_directions()
     back = np.random.default_rng(4).uniform(0.0, np.pi, len(build))
     turned = directions.tilt_back(build, back)
     assert directions.from_vertical(turned) == pytest.approx(
@@ -50,32 +50,37 @@ def test_tilt_back_turns_towards_the_axis_and_stops_there():
     assert (turned[:, 0] >= 0.0).all()
 
 
-def test_no_tilt_back_changes_nothing_to_the_bit():
-    build, _ = some_builds()
+def test_zero_tilt_back_keeps_directions_bit_for_bit():
+    build, _ = random_directions()
     assert (directions.tilt_back(build, np.zeros(len(build))) == build).all()
 
 
-def test_the_least_tilt_back_is_the_first_good_one():
-    build, angle = some_builds()
-    wanted = angle * np.random.default_rng(5).uniform(0.0, 0.99, len(build))
-    hopeless = np.arange(len(build)) % 7 == 0
+def test_smallest_tilt_back_is_the_first_feasible_one():
+    build, angle = random_directions()
+    required = angle * np.random.default_rng(5).uniform(0.0, 0.99, len(build))
+    is_infeasible = np.arange(len(build)) % 7 == 0
 
-    def good(rows, tilt):
-        return (tilt >= wanted[rows]) & ~hopeless[rows]
+    def is_feasible(rows, tilt):
+        return (tilt >= required[rows]) & ~is_infeasible[rows]
 
-    found = directions.least_tilt_back(build, np.zeros(len(build)), good)
-    assert np.isnan(found[hopeless]).all()
-    assert found[~hopeless] == pytest.approx(wanted[~hopeless], abs=1e-12)
-    assert (found >= wanted)[~hopeless].all()
+    tilts = directions.least_tilt_back(build, np.zeros(len(build)), is_feasible)
+    assert np.isnan(tilts[is_infeasible]).all()
+    assert tilts[~is_infeasible] == pytest.approx(required[~is_infeasible], abs=1e-12)
+    assert (tilts >= required)[~is_infeasible].all()
 
 
-def test_one_direction_for_a_part_of_a_turn_is_the_mean_of_the_local_ones():
+def test_layer_mean_over_part_of_a_turn_is_the_mean_of_local_directions():
     tangent, start, end = np.array([-0.6, 0.8]), 0.4, 2.0
-    at = np.linspace(start, end, 7)
-    c, s = np.cos(at), np.sin(at)
-    found = directions.layer_mean(tangent, at, start, end)
+    angles = np.linspace(start, end, 7)
+    c, s = np.cos(angles), np.sin(angles)
+    directions_in_frame = directions.layer_mean(tangent, angles, start, end)
     in_space = np.stack(
-        [found[:, 0] * c - found[:, 1] * s, found[:, 0] * s + found[:, 1] * c, found[:, 2]], axis=1
+        [
+            directions_in_frame[:, 0] * c - directions_in_frame[:, 1] * s,
+            directions_in_frame[:, 0] * s + directions_in_frame[:, 1] * c,
+            directions_in_frame[:, 2],
+        ],
+        axis=1,
     )
     sine, cosine = np.sin(end) - np.sin(start), np.cos(start) - np.cos(end)
     mean = np.array([-0.6 * sine, -0.6 * cosine, 0.8 * (end - start)])

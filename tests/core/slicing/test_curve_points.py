@@ -23,76 +23,78 @@ def fronts():
     return constant_distance.layers(torus, first, 5.0, 0.5 * np.pi)
 
 
-def worst(curve, w):
-    """Largest distance of a dense sampling of the curve from the polyline through w."""
+def largest_chord_error(curve, w):
+    """Largest distance between dense samples of the curve and the polyline through w."""
     ends = curve.at(w)[0]
-    found = 0.0
-    for a, b, low, high in zip(ends[:-1], ends[1:], w[:-1], w[1:]):
-        points = curve.at(np.linspace(low, high, 60))[0] - a
+    error = 0.0
+    for a, b, start, end in zip(ends[:-1], ends[1:], w[:-1], w[1:]):
+        points = curve.at(np.linspace(start, end, 60))[0] - a
         share = np.clip(points @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
-        found = max(found, np.linalg.norm(points - share[:, None] * (b - a), axis=1).max())
-    return found
+        error = max(error, np.linalg.norm(points - share[:, None] * (b - a), axis=1).max())
+    return error
 
 
 @pytest.mark.parametrize("error", [0.5, 0.01, 0.0005])
 @pytest.mark.parametrize("index", [0, 3, 9, 15])
-def test_chords_keep_the_error_and_corners_are_points(fronts, index, error):
+def test_chords_keep_the_tolerance_and_corners_are_points(fronts, index, error):
     curve = fronts[index].curve
-    low = curve.w[0] + 0.3
-    w = sample_within_chord(curve, low, low + curve.period, error)
+    start = curve.w[0] + 0.3
+    w = sample_within_chord(curve, start, start + curve.period, error)
     assert (np.diff(w) > 0.0).all()
-    assert w[0] == low and w[-1] == low + curve.period
-    assert worst(curve, w) <= error * (1.0 + 1e-3)
-    places = curve.wrap(w)
+    assert w[0] == start and w[-1] == start + curve.period
+    assert largest_chord_error(curve, w) <= error * (1.0 + 1e-3)
+    parameters = curve.wrap(w)
     for corner in curve.w[curve.corners]:
-        assert np.abs(places - corner).min() < 1e-9
+        assert np.abs(parameters - corner).min() < 1e-9
 
 
-def test_no_more_points_than_a_circle_needs():
-    circle = ring().curve
+def test_a_circle_gets_the_minimum_number_of_points():
+    circle = make_ring().curve
     w = sample_within_chord(circle, circle.w[0], circle.w[-1], 0.01)
     needed = np.pi / np.arccos(1.0 - 0.01 / 15.0)
     assert needed <= len(w) - 1 <= needed + 2
 
 
-def ring():
-    """The circle of the torus's own radius."""
+def make_ring():
+    """Return a circle with the torus's small radius."""
     torus = Torus(60.0, 15.0)
     v = 2.0 * np.pi * np.arange(360) / 360
     return interpolate_polyline(torus, torus.point(np.full(360, 0.1), v))
 
 
-def test_what_the_points_outline_is_the_curve_where_its_curvature_jumps():
-    """A rounded rectangle: from the straight parts to the arcs the curvature jumps."""
+def test_the_outline_follows_the_curve_where_its_curvature_jumps():
+    """In a rounded rectangle the curvature jumps between straight parts and arcs."""
     half, radius = np.array([20.0, 10.0]), 8.0
     angle = np.arange(0, 361, 3) * np.pi / 180.0
     centre = np.sign(np.stack([np.cos(angle + 1e-9), np.sin(angle + 1e-9)], axis=1)) * half
     flat, along = [], []
     for k, a in enumerate(angle[:-1]):
         ends = [centre[k]] if k % 30 else [centre[k - 1] if k else centre[-2], centre[k]]
-        for place in ends:  # both ends of a straight part have the same tangent
-            flat.append(place + radius * np.array([np.cos(a), np.sin(a)]))
+        for corner in ends:  # both ends of a straight part have the same tangent
+            flat.append(corner + radius * np.array([np.cos(a), np.sin(a)]))
             along.append([-np.sin(a), np.cos(a)])
     flat, along = (
-        np.column_stack([one + one[:1], np.zeros(len(one) + 1)]) for one in (flat, along)
+        np.column_stack([rows + rows[:1], np.zeros(len(rows) + 1)]) for rows in (flat, along)
     )
     w = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(flat, axis=0), axis=1))]
     curve = SpaceCurve(w, flat, along, along, True)
 
-    def off(points):
+    def measure_offset(points):
         out = np.abs(points[:, :2]) - half
         return np.abs(
             np.where((out > 0).all(axis=1), np.linalg.norm(out, axis=1), out.max(axis=1)) - radius
         )
 
-    assert off(curve.at(curve.refined(7))[0]).max() < 1e-5
+    assert measure_offset(curve.at(curve.refined(7))[0]).max() < 1e-5
     for start in (0.0, 1.7, 9.3):
-        places = sample_within_chord(curve, start, start + curve.period, 0.01)
-        points, slope, _ = curve.at(places)
+        parameters = sample_within_chord(curve, start, start + curve.period, 0.01)
+        points, slope, _ = curve.at(parameters)
         slope /= np.linalg.norm(slope, axis=1, keepdims=True)
         drawn = outline(points, np.stack([slope, slope], axis=1))
-        segment = np.repeat(np.arange(len(places) - 1), 15)
+        segment = np.repeat(np.arange(len(parameters) - 1), 15)
         assert (
-            off(drawn.at(segment, np.tile(np.arange(1, 16) / 16.0, len(places) - 1))[0]).max()
+            measure_offset(
+                drawn.at(segment, np.tile(np.arange(1, 16) / 16.0, len(parameters) - 1))[0]
+            ).max()
             < 1e-4
         )

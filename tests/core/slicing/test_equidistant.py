@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cuts of meshes with cones and cylinders: on the cone, on the mesh, closed, and with the solid on the right side."""
+"""Cuts of meshes with cones and cylinders: on the cone, on the mesh, closed, and with the solid on
+the correct side."""
 
 import math
 
@@ -13,39 +14,44 @@ from freecad_am.core.slicing.solids.equidistant import Facets
 
 
 def hull(points):
-    """Vertices, outward faces and half spaces (k, 4) of the convex hull of points."""
-    found = ConvexHull(points)
-    faces = found.simplices.copy()
+    """Vertices, outward faces and half-spaces (k, 4) of the convex hull of points."""
+    convex_hull = ConvexHull(points)
+    faces = convex_hull.simplices.copy()
     a, b, c = (points[faces[:, k]] for k in range(3))
-    inward = (np.cross(b - a, c - a) * found.equations[:, :3]).sum(axis=1) < 0.0
+    inward = (np.cross(b - a, c - a) * convex_hull.equations[:, :3]).sum(axis=1) < 0.0
     faces[inward] = faces[inward][:, [0, 2, 1]]
     used = np.unique(faces)
-    return points[used], np.searchsorted(used, faces), found.equations
+    return points[used], np.searchsorted(used, faces), convex_hull.equations
 
 
-def winding(loops, theta, z):
-    """How often the loops enclose places of the surface, counted along rays up the hub; what runs round it counts too."""
+def count_windings(loops, theta, z):
+    """Count how often the loops enclose points of the surface, along rays up the hub, including
+    loops around the hub."""
     count = np.full(len(theta), sum(loop.turns for loop in loops))
     for loop in loops:
         start = np.arctan2(loop.points[:, 1], loop.points[:, 0])
         end = start + np.remainder(np.roll(start, -1) - start + math.pi, TURN) - math.pi
-        low, high = loop.points[:, 2], np.roll(loop.points[:, 2], -1)
+        start_z, end_z = loop.points[:, 2], np.roll(loop.points[:, 2], -1)
         for turn in (-TURN, 0.0, TURN):
-            a, b = start + turn, end + turn
-            passes = (a > theta[:, None]) != (b > theta[:, None])
-            at = low + (theta[:, None] - a) * (high - low) / np.where(b == a, 1.0, b - a)
-            count += np.where(passes & (at > z[:, None]), np.where(b < a, 1, -1), 0).sum(axis=1)
+            turned_start, turned_end = start + turn, end + turn
+            passes = (turned_start > theta[:, None]) != (turned_end > theta[:, None])
+            crossing_z = start_z + (theta[:, None] - turned_start) * (end_z - start_z) / np.where(
+                turned_end == turned_start, 1.0, turned_end - turned_start
+            )
+            count += np.where(
+                passes & (crossing_z > z[:, None]), np.where(turned_end < turned_start, 1, -1), 0
+            ).sum(axis=1)
     return count
 
 
 @pytest.mark.parametrize("seed", range(40))
 @pytest.mark.always
-def test_a_convex_body_is_cut_where_it_is(seed):
+def test_cuts_of_a_convex_body_enclose_its_inside(seed):
     rng = np.random.default_rng(seed)
     base = Developable(
         rng.uniform(5.0, 60.0), math.inf if seed % 3 == 0 else rng.uniform(20.0, 300.0)
     )
-    # near the hub and around it: axis inside, facets pierced, edges crossed twice, contours all the way round
+    # near the hub and around it: axis inside, pierced facets, edges crossed twice, contours around the axis
     vertices, faces, spaces = hull(
         rng.normal(size=3) * rng.choice([0.0, 20.0, 60.0])
         + rng.uniform(5, 60) * rng.normal(size=(rng.integers(5, 40), 3))
@@ -60,10 +66,10 @@ def test_a_convex_body_is_cut_where_it_is(seed):
             assert np.abs(base.distance(loop.points) - distance).max() < 1e-9
             assert np.abs((loop.points @ spaces[:, :3].T + spaces[:, 3]).max(axis=1)).max() < 1e-8
             middle = 0.5 * (loop.points + np.roll(loop.points, -1, axis=0))
-            within = middle[
+            middles_on_mesh = middle[
                 (middle @ spaces[:, :3].T + spaces[:, 3]).max(axis=1) < 1e-7
-            ]  # on the mesh: nothing cut off
-            assert len(within) == len(middle)
+            ]  # on the mesh: no corner is cut off
+            assert len(middles_on_mesh) == len(middle)
             assert np.abs(base.distance(middle) - distance).max() < 1.1e-3
         theta, z = (
             rng.uniform(-math.pi, math.pi, 300),
@@ -75,13 +81,13 @@ def test_a_convex_body_is_cut_where_it_is(seed):
             np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1) @ spaces[:, :3].T
             + spaces[:, 3]
         )
-        sure = np.abs(depth.max(axis=1)) > 0.05
+        is_clear = np.abs(depth.max(axis=1)) > 0.05
         np.testing.assert_array_equal(
-            winding(loops, theta, z)[sure], (depth.max(axis=1) < 0.0)[sure]
+            count_windings(loops, theta, z)[is_clear], (depth.max(axis=1) < 0.0)[is_clear]
         )
 
 
-def box(low, high):
+def make_box(low, high):
     """Vertices and outward faces of a box."""
     x, y, z = (np.array(pair) for pair in zip(low, high))
     vertices = np.array([[x[i], y[j], z[k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)], float)
@@ -89,8 +95,8 @@ def box(low, high):
     return vertices, np.array([face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))])
 
 
-def test_a_box_pierced_by_the_axis_is_cut_in_rings_within_its_lids():
-    facets = Facets(Developable(10.0), *box((-50, -50, 0), (50, 50, 30)))
+def test_cuts_of_a_box_around_the_axis_are_rings_on_its_lids():
+    facets = Facets(Developable(10.0), *make_box((-50, -50, 0), (50, 50, 30)))
     loops = sorted(facets.cut(5.0, 1e-3), key=lambda loop: loop.points[:, 2].mean())
     assert [loop.turns for loop in loops] == [1, -1]
     for loop, height in zip(loops, (0.0, 30.0)):
@@ -99,18 +105,18 @@ def test_a_box_pierced_by_the_axis_is_cut_in_rings_within_its_lids():
 
 
 def test_edges_along_generatrices_and_vertices_on_the_surface_leave_no_gap():
-    # a wedge with two edges on generatrices of the very cylinder that cuts it, and its corners on it
+    # a wedge with two edges and its corners on the cylinder that cuts it
     angle = np.array([-0.4, 0.4])
     ring = np.stack([20.0 * np.cos(angle), 20.0 * np.sin(angle)], axis=1)
-    low = np.vstack([np.c_[ring, [0.0, 0.0]], [[40.0, 0.0, 0.0]]])
-    vertices, faces, _ = hull(np.vstack([low, low + [0.0, 0.0, 25.0]]))
+    bottom = np.vstack([np.c_[ring, [0.0, 0.0]], [[40.0, 0.0, 0.0]]])
+    vertices, faces, _ = hull(np.vstack([bottom, bottom + [0.0, 0.0, 25.0]]))
     facets = Facets(Developable(20.0), vertices, faces)
     for distance in (0.0, 1e-12, -1e-12, 20.0, 19.999999, -1.0):
         for loop in facets.cut(distance, 1e-3):
             assert loop.turns == 0 and len(loop.points) >= 3
-    # beyond the chord between the two edges there is solid: one contour, from lid to lid
+    # material continues beyond the chord between the two edges: one contour from lid to lid
     assert len(facets.cut(0.0, 1e-3)) == 1
-    assert len(facets.cut(20.0, 1e-3)) == 0  # touched along an edge only
+    assert len(facets.cut(20.0, 1e-3)) == 0  # the cut only touches an edge
 
 
 def test_neighbouring_layers_are_equidistant():
@@ -126,8 +132,8 @@ def test_neighbouring_layers_are_equidistant():
             )
 
 
-def test_an_open_mesh_is_refused_with_the_place():
-    vertices, faces = box((10, -5, 0), (20, 5, 30))
+def test_an_open_mesh_is_rejected_with_its_position():
+    vertices, faces = make_box((10, -5, 0), (20, 5, 30))
     with pytest.raises(InputError, match=r"blade: 3 edges .* \(1\d, 0, 30\) mm") as caught:
         Facets(Developable(10.0), vertices, faces[:-1], "blade")
     assert caught.value.code == "OPEN_MESH"
@@ -138,13 +144,13 @@ def test_the_order_of_faces_does_not_matter():
     rng = np.random.default_rng(8)
     vertices, faces, _ = hull(np.array([50.0, 10.0, 20.0]) + 25.0 * rng.normal(size=(40, 3)))
     order = rng.permutation(len(faces))
-    turned = np.array(
+    rotated = np.array(
         [np.roll(face, k) for face, k in zip(faces[order], rng.integers(0, 3, len(faces)))]
     )
     for distance in (2.0, 9.0, 20.0):
         lengths = []
-        for some in (faces, turned):
-            loops = Facets(base, vertices, some).cut(distance, 1e-4)
+        for ordered_faces in (faces, rotated):
+            loops = Facets(base, vertices, ordered_faces).cut(distance, 1e-4)
             lengths.append(
                 sorted(np.linalg.norm(np.diff(loop.points, axis=0), axis=1).sum() for loop in loops)
             )

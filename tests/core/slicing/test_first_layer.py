@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The first layer against Chalvin 2019, equation 3, and against the solids it lies on."""
+"""The first layer compared with Chalvin 2019, equation 3, and with the substrate."""
 
 import numpy as np
 import pytest
@@ -36,29 +36,29 @@ def test_torus_on_a_pipe_is_equation_3():
         ),
     ],
 )
-def test_between_the_nodes_too_the_curve_lies_on_wall_and_substrate(substrate, wall, range_):
+def test_the_curve_stays_on_wall_and_substrate_between_nodes(substrate, wall, range_):
     curve = intersect_implicit(wall, substrate, range_, even_grid(wall, 90)).curve
-    between = curve.at(curve.refined(10))[0]
+    refined = curve.at(curve.refined(10))[0]
     assert np.abs(substrate.value(curve.points)[0]).max() < 1e-11
-    assert np.abs(substrate.value(between)[0]).max() < 5e-5
-    assert np.linalg.norm(wall.point(*wall.inverse(between)) - between, axis=1).max() < 5e-5
+    assert np.abs(substrate.value(refined)[0]).max() < 5e-5
+    assert np.linalg.norm(wall.point(*wall.inverse(refined)) - refined, axis=1).max() < 5e-5
 
 
-def test_a_wall_that_misses_the_substrate_is_refused():
-    with pytest.raises(InputError, match="rise out of the substrate") as refused:
+def test_a_wall_that_misses_the_substrate_is_rejected():
+    with pytest.raises(InputError, match="rise out of the substrate") as caught:
         intersect_implicit(cylinder(40.0), PIPE, (-50.0, 50.0), even_grid(TORUS, 90))
-    assert refused.value.code == "NO_INTERSECTION"
+    assert caught.value.code == "NO_INTERSECTION"
 
 
 @pytest.mark.parametrize("order", [1, -1])
-def test_a_chain_of_points_gives_the_same_layer(order):
+def test_a_polyline_gives_the_same_layer(order):
     exact = intersect_implicit(TORUS, PIPE, (0.0, 1.5), even_grid(TORUS, 360, 0.2))
     layer = interpolate_polyline(TORUS, exact.curve.points[:-1][::order])
     assert np.abs(exact.curve.nearest(layer.curve.at(layer.curve.refined(7))[0])[0]).max() < 1e-7
     assert not len(layer.curve.corners)
 
 
-def test_corners_of_a_chain_stay_corners():
+def test_corners_of_a_polyline_stay_corners():
     v = np.linspace(0.0, 2.0 * np.pi, 120, endpoint=False)
     wall = cylinder(10.0)
     layer = interpolate_polyline(wall, wall.point(6.0 * np.abs(np.sin(v)), v))
@@ -68,7 +68,7 @@ def test_corners_of_a_chain_stay_corners():
     )
 
 
-def test_a_chain_that_does_not_go_around_is_refused():
+def test_a_polyline_that_does_not_enclose_the_wall_is_rejected():
     v = np.linspace(0.0, 1.0, 20)
     there_and_back = np.r_[v, v[::-1] - 0.01]
     with pytest.raises(InputError, match="once around"):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fronts over meshes: the same as on the parametric wall, and on walls that split, merge, close and end."""
+"""Fronts on meshes match those on the parametric wall, also on walls that split, merge, close and
+end."""
 
 import numpy as np
 import pytest
@@ -20,33 +21,37 @@ SILL = HalfSpace(np.zeros(3), np.array([0.0, 1.0, 0.0]))
 
 
 def assert_spacing(layers, height):
-    """At the nodes within a hundredth of what is promised, between them, on a grid ten times finer, as promised."""
+    """Nodes keep the distance to 1e-5 mm; points of a grid ten times finer to 1e-3 mm."""
     for below, above in zip(layers, layers[1:]):
         for front in above:
             assert local_distances(front, below) == pytest.approx(height, abs=1e-5)
             assert brute(front.at(front.refined(10))[0], below) == pytest.approx(height, abs=1e-3)
 
 
-def farthest(wall, layers, away=0.0):
-    """Largest distance from the wall to the nearest bead, of places farther than `away` from its rims."""
+def largest_distance(wall, layers, clearance=0.0):
+    """Largest distance from the wall to the nearest bead, for points farther than `clearance` from
+    the rims."""
     beads = np.vstack([front.at(front.refined(20))[0] for layer in layers for front in layer])
     points = samples(wall)
-    if away > 0.0:
+    if clearance > 0.0:
         points = points[
-            cKDTree(np.vstack([rim.points for rim in wall.rims])).query(points)[0] > away
+            cKDTree(np.vstack([rim.points for rim in wall.rims])).query(points)[0] > clearance
         ]
     return cKDTree(beads).query(points)[0].max()
 
 
 def assert_faces_up(wall, layers):
-    """Seen from outside, the layer below lies to the right of every bead, and what is still to come to the left."""
+    """Seen from outside, the previous layer is to the right of every bead and the next one to the
+    left."""
     for below, above in zip(layers, layers[1:]):
         for front in above:
-            place, slope, _ = front.at(front.w[:-1] + 0.5 * front.span)
-            left = np.cross(wall.project(place)[1], slope)
-            down = np.stack([one.nearest(place)[1] for one in below])
-            nearest = np.argmin(np.linalg.norm(down - place, axis=-1), axis=0)
-            assert ((down[nearest, np.arange(len(place))] - place) * left).sum(axis=1).max() < 0.0
+            points, slope, _ = front.at(front.w[:-1] + 0.5 * front.span)
+            leftward = np.cross(wall.project(points)[1], slope)
+            feet = np.stack([curve.nearest(points)[1] for curve in below])
+            nearest = np.argmin(np.linalg.norm(feet - points, axis=-1), axis=0)
+            assert ((feet[nearest, np.arange(len(points))] - points) * leftward).sum(
+                axis=1
+            ).max() < 0.0
 
 
 @pytest.fixture(scope="module")
@@ -55,19 +60,21 @@ def torus():
     return wall, fronts.slice_layers(wall, 5.0).fronts
 
 
-def test_the_same_fronts_as_on_the_parametric_wall(torus):
+def test_fronts_equal_those_on_the_parametric_wall(torus):
     wall, layers = torus
     surface = Torus(60.0, 15.0)
     first = intersect_implicit(surface, PIPE, (0.0, 1.5), even_grid(surface, 360))
     graph = constant_distance.layers(surface, first, 5.0, np.pi / 2)
     assert_spacing(layers, 5.0)
     assert_faces_up(wall, layers)
-    for (front,), other in zip(layers, graph):
-        assert other.curve.nearest(front.at(front.refined(5))[0])[0] == pytest.approx(0.0, abs=2e-4)
-        assert len(front.corners) == len(other.curve.corners)
+    for (front,), reference in zip(layers, graph):
+        assert reference.curve.nearest(front.at(front.refined(5))[0])[0] == pytest.approx(
+            0.0, abs=2e-4
+        )
+        assert len(front.corners) == len(reference.curve.corners)
 
 
-def test_at_the_end_of_the_wall_the_beads_are_open_and_finish_it(torus):
+def test_open_beads_finish_the_end_of_the_wall(torus):
     wall, layers = torus
     assert [layer[0].closed for layer in layers] == [True] * 10 + [False] * (len(layers) - 10)
     rims = Rims.of(wall.rims)
@@ -77,8 +84,8 @@ def test_at_the_end_of_the_wall_the_beads_are_open_and_finish_it(torus):
     for layer in layers[10:]:
         u = np.arctan2(layer[0].points[[0, -1], 2], layer[0].points[[0, -1], 0] + 60.0)
         assert u == pytest.approx(np.pi / 2, abs=1e-9)
-    assert farthest(wall, layers) < 5.0
-    assert farthest(wall, layers, 5.0) < 3.0
+    assert largest_distance(wall, layers) < 5.0
+    assert largest_distance(wall, layers, 5.0) < 3.0
 
 
 @pytest.mark.parametrize("step", [1.0, 0.7])
@@ -87,23 +94,23 @@ def test_a_front_splits_at_a_hole_and_merges_behind_it(step):
     wall, height = sheet(SILL, [(2.0, 20.0, 9.0)], step=step), 1.7
     layers = fronts.slice_layers(wall, height).fronts
     count = [len(layer) for layer in layers]
-    # the hole begins at 11 mm; behind it, fronts that end 3.61 mm apart on its rim do not meet yet
+    # the hole begins at 11 mm; behind it, fronts that end 3.61 mm apart on its rim do not merge yet
     assert count == [1] * 7 + [2] * 14 + [1] * 10
     assert not any(front.closed for layer in layers for front in layer)
-    for i, (front,) in enumerate(layers[:7]):
-        assert front.points[:, 1] == pytest.approx(height * i, abs=1e-9)
+    for number, (front,) in enumerate(layers[:7]):
+        assert front.points[:, 1] == pytest.approx(height * number, abs=1e-9)
     for layer in layers[7:21]:
         ends = np.vstack([front.points[[0, -1], :2] for front in layer])
-        reach = np.hypot(*(ends - [2.0, 20.0]).T)
-        assert np.sort(reach)[:2] == pytest.approx(9.0, abs=1e-5)
+        hole_distance = np.hypot(*(ends - [2.0, 20.0]).T)
+        assert np.sort(hole_distance)[:2] == pytest.approx(9.0, abs=1e-5)
         for front in layer:
             points = front.at(front.refined(10))[0]
             assert np.hypot(points[:, 0] - 2.0, points[:, 1] - 20.0).min() > 9.0 - 1e-5
     assert [len(layer[0].corners) for layer in layers[-8:]] == [1] * 8
     assert_spacing(layers, height)
     assert_faces_up(wall, layers)
-    assert farthest(wall, layers) < height
-    assert farthest(wall, layers, height) < 0.6 * height
+    assert largest_distance(wall, layers) < height
+    assert largest_distance(wall, layers, height) < 0.6 * height
 
 
 def test_a_front_closes_on_itself():
@@ -121,8 +128,8 @@ def test_a_front_closes_on_itself():
     assert len(layers) == int(polar[0][0] / turn) + 1
 
 
-class BothEnds:
-    """Everything outside a slanted slab: fronts come from both sides of the ball."""
+class SlabEnds:
+    """Everything outside an inclined slab; fronts start from both sides of the ball."""
 
     def __init__(self):
         self.sides = (
@@ -131,14 +138,14 @@ class BothEnds:
         )
 
     def value(self, points):
-        (one, up), (other, down) = (side.value(points) for side in self.sides)
-        nearer = one < other
-        return np.where(nearer, one, other), np.where(nearer[..., None], up, down)
+        (lower, up), (upper, down) = (side.value(points) for side in self.sides)
+        nearer = lower < upper
+        return np.where(nearer, lower, upper), np.where(nearer[..., None], up, down)
 
 
 @pytest.mark.long
 def test_two_fronts_merge_with_corners():
-    wall, height = ball(BothEnds()), 1.3
+    wall, height = ball(SlabEnds()), 1.3
     layers = fronts.slice_layers(wall, height).fronts
     assert [len(layer) for layer in layers][:12] == [2] * 6 + [1] * 6
     assert [len(layer[0].corners) for layer in layers][:12] == [0] * 6 + [2] * 6
@@ -152,16 +159,16 @@ def test_a_half_shell_has_open_beads_from_rim_to_rim():
     assert not any(front.closed for layer in layers for front in layer)
     assert_spacing(layers, 2.0)
     assert_faces_up(wall, layers)
-    full = [layer[0] for layer in layers if not Rims.of(wall.rims).ends_of(layer[0])]
-    assert len(full) == 17
-    for front in full[1:]:  # on the side rims, v = 0.5 and 0.5 + pi, to rounding
+    rim_to_rim = [layer[0] for layer in layers if not Rims.of(wall.rims).ends_of(layer[0])]
+    assert len(rim_to_rim) == 17
+    for front in rim_to_rim[1:]:  # on the side rims, v = 0.5 and 0.5 + pi, to rounding
         x, y, z = front.points[[0, -1]].T
         v = np.sort(np.arctan2(y, np.hypot(x + 60.0, z) - 60.0) % (2.0 * np.pi))
         assert v == pytest.approx([0.5, 0.5 + np.pi], abs=1e-9)
 
 
 @pytest.mark.parametrize("width", [2.0 * np.pi, 3.0], ids=["around", "part of a turn"])
-def test_a_last_layer_may_lie_on_the_end(width):
+def test_a_last_layer_may_coincide_with_the_end(width):
     wall = tube(FLOOR, 20.0, 1.5, width=width)
     layers = fronts.slice_layers(wall, 5.0).fronts
     assert len(layers) == 5
@@ -171,8 +178,8 @@ def test_a_last_layer_may_lie_on_the_end(width):
         assert not Rims.of(wall.rims).ends_of(front)
 
 
-def test_a_wall_may_begin_at_its_own_edge():
-    """Nothing is behind then but the edge itself."""
+def test_a_wall_may_start_at_its_own_edge():
+    """Only the edge is behind the first layer."""
     wall = tube(FLOOR, 12.0, 1.5, low=0.0)
     assert not wall.behind.any()
     layers = fronts.slice_layers(wall, 3.0).fronts
@@ -181,13 +188,12 @@ def test_a_wall_may_begin_at_its_own_edge():
     )
 
 
-def test_the_mesh_decides_no_place():
-    """A finer mesh gives the same fronts."""
+def test_a_finer_mesh_gives_the_same_fronts():
     floor = HalfSpace(np.zeros(3), np.array([0.2, 0.3, 1.0]))
     coarse, fine = (
         fronts.slice_layers(tube(floor, 20.0, step, low=-10.0), 2.0).fronts for step in (2.0, 0.9)
     )
     assert [len(layer) for layer in coarse] == [len(layer) for layer in fine]
-    for one, other in zip(coarse, fine):
-        for front in one:
-            assert brute(front.at(front.refined(5))[0], other) == pytest.approx(0.0, abs=2e-4)
+    for coarse_layer, fine_layer in zip(coarse, fine):
+        for front in coarse_layer:
+            assert brute(front.at(front.refined(5))[0], fine_layer) == pytest.approx(0.0, abs=2e-4)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Surfaces that only touch a face: where rounding puts it decides nothing."""
+"""Faces that only touch the cutting surface give the same loops whatever the rounding."""
 
 import math
 
@@ -14,35 +14,35 @@ from tests.core.slicing.test_equidistant import hull
 CORNERS = np.array([[x, y, z] for x in (0.0, 1.0) for y in (-10.0, 10.0) for z in (-20.0, 20.0)])
 
 
-@pytest.mark.parametrize("turned", [0.0, 0.8, math.pi / 2])
-@pytest.mark.parametrize("off", [-3e-5, -1e-9, 0.0, 1e-9, 3e-5])
+@pytest.mark.parametrize("angle", [0.0, 0.8, math.pi / 2])
+@pytest.mark.parametrize("offset", [-3e-5, -1e-9, 0.0, 1e-9, 3e-5])
 @pytest.mark.parametrize(
     "surface", [Developable(60.0), Developable(60.0, 200.0)], ids=["cylinder", "cone"]
 )
-def test_a_flat_top_that_touches_a_layer_does_not_divide_it(surface, off, turned):
-    """A box with its top in the tangent plane of the layer at 16 mm, turned about the normal there: one loop with the area
-    of its cut, and none of a box that stands on that plane."""
+def test_a_flat_top_that_touches_a_layer_does_not_divide_it(surface, offset, angle):
+    """The top of a box is in the tangent plane of the layer at 16 mm, rotated about the normal: one
+    loop with the area of its cut, and none for a box that stands on that plane."""
     cos, sin = math.cos(surface.taper), math.sin(surface.taper)
     foot = np.array([0.0 if math.isinf(surface.height) else 60.0 * (1.0 - 30.0 / 200.0), 0.0, 30.0])
     foot[0] = foot[0] or 60.0
-    out, up = np.array([cos, 0.0, sin]), np.array([-sin, 0.0, cos])
-    side = np.array([0.0, 1.0, 0.0])
+    out, upward = np.array([cos, 0.0, sin]), np.array([-sin, 0.0, cos])
+    sideways = np.array([0.0, 1.0, 0.0])
     along, across = (
-        math.cos(turned) * up + math.sin(turned) * side,
-        math.cos(turned) * side - math.sin(turned) * up,
+        math.cos(angle) * upward + math.sin(angle) * sideways,
+        math.cos(angle) * sideways - math.sin(angle) * upward,
     )
     assert abs(float(surface.distance(foot[None])[0])) < 1e-12
 
-    def loops(low, high):
-        depth = low + (high - low) * CORNERS[:, :1]
+    def cut_box(bottom, top):
+        depth = bottom + (top - bottom) * CORNERS[:, :1]
         vertices, faces, _ = hull(
             foot + depth * out + CORNERS[:, 1:2] * across + CORNERS[:, 2:] * along
         )
         return cut(Facets(surface, vertices, faces), 16.0, 0.0125)
 
-    (loop,) = loops(-8.0, 16.0 + off)
+    (loop,) = cut_box(-8.0, 16.0 + offset)
     assert loop.turns == 0
     assert np.abs(surface.distance(loop.points) - 16.0).max() < 1e-9
     area = 0.5 * doubled_area(surface.offset(16.0).unroll(loop.points))
     assert 800.0 < area < 830.0  # of 20 x 40 mm seen along the normal
-    assert loops(16.0 + off, 30.0) == []
+    assert cut_box(16.0 + offset, 30.0) == []

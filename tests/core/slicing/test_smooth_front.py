@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Smooth fronts on walls of any faces: the band is held on a finer grid, the turn is what it says, rims are kept."""
+"""Smooth fronts on walls of any faces: on a finer grid they stay in the band, turn as reported, and
+end on the rims."""
 
 import numpy as np
 import pytest
@@ -27,17 +28,17 @@ WALLS = {
         pytest.param(name, marks=pytest.mark.long if name == "an opening" else ()) for name in WALLS
     ],
 )
-def cut(request):
+def sliced_wall(request):
     make, height = WALLS[request.param]
     wall = make()
     exact, smooth = (
-        fronts.slice_layers(wall, height, how) for how in (None, Smoothing(BAND, LIMIT))
+        fronts.slice_layers(wall, height, smoothing) for smoothing in (None, Smoothing(BAND, LIMIT))
     )
     return request.param, wall, height, exact, smooth
 
 
-def sharpest(wall, front):
-    """Turn of fine chords within the wall, rad/mm, over stretches of 0.3 mm, by differences alone."""
+def measure_turn(wall, front):
+    """Turn of fine chords within the wall, rad/mm, over 0.3 mm, from differences."""
     w = np.linspace(front.w[0], front.w[-1], max(8, int(front.length / 0.1)))
     points = front.at(w)[0]
     normal = wall.project(points)[1]
@@ -50,8 +51,8 @@ def sharpest(wall, front):
 
 
 @pytest.mark.always("a half shell")
-def test_the_band_is_held_and_the_wall_kept_between_the_nodes(cut):
-    _, wall, height, _, smooth = cut
+def test_fronts_stay_in_the_band_and_on_the_wall_between_nodes(sliced_wall):
+    _, wall, height, _, smooth = sliced_wall
     for below, above in zip(smooth.fronts, smooth.fronts[1:]):
         for front in above:
             points = front.at(front.refined(11))[0]
@@ -62,27 +63,29 @@ def test_the_band_is_held_and_the_wall_kept_between_the_nodes(cut):
             assert np.linalg.norm(wall.project(points)[0] - points, axis=1).max() < 1e-4
 
 
-def test_corners_are_rounded_to_what_is_asked_or_what_the_band_allows(cut):
-    name, wall, height, exact, smooth = cut
-    long = [front for layer in smooth.fronts[1:] for front in layer if front.length > 8.0 * height]
-    assert not any(len(front.corners) for front in long)
-    turns = np.array([turn(wall, front) for front in long])
-    measured = np.array([sharpest(wall, front) for front in long])
-    assert (measured < turns + 1e-3).all()  # and no sharper than they say
-    before = [
+def test_corners_are_rounded_as_far_as_the_band_allows(sliced_wall):
+    name, wall, height, exact, smooth = sliced_wall
+    long_fronts = [
+        front for layer in smooth.fronts[1:] for front in layer if front.length > 8.0 * height
+    ]
+    assert not any(len(front.corners) for front in long_fronts)
+    turns = np.array([turn(wall, front) for front in long_fronts])
+    measured = np.array([measure_turn(wall, front) for front in long_fronts])
+    assert (measured < turns + 1e-3).all()  # never sharper than the reported turn
+    exact_turns = [
         turn(wall, front)
         for layer in exact.fronts[1:]
         for front in layer
         if front.length > 8.0 * height
     ]
-    assert sum(rate > LIMIT for rate in before) > 3
-    # where two fronts stand against the back of an opening and merge, the band does not suffice
+    assert sum(turn_rate > LIMIT for turn_rate in exact_turns) > 3
+    # the band is too small where two fronts merge behind an opening
     assert (turns > LIMIT).sum() <= (8 if name == "an opening" else 0)
-    assert turns.max() < 0.5 * max(before)
+    assert turns.max() < 0.5 * max(exact_turns)
 
 
-def test_ends_stay_on_the_rims(cut):
-    _, wall, _, _, smooth = cut
+def test_ends_stay_on_the_rims(sliced_wall):
+    _, wall, _, _, smooth = sliced_wall
     rims = Rims.of(wall.rims)
     for layer in smooth.fronts[1:]:
         for front in layer:
@@ -90,20 +93,25 @@ def test_ends_stay_on_the_rims(cut):
                 assert rims.nearest(front.points[[0, -1]])[0] == pytest.approx(0.0, abs=1e-6)
 
 
-def test_uneven_layers_are_taken_for_no_gaps(cut):
-    _, _, _, exact, smooth = cut
+def test_uneven_layers_get_no_closing_beads(sliced_wall):
+    _, _, _, exact, smooth = sliced_wall
     assert abs(len(smooth.fronts) - len(exact.fronts)) <= 1
-    gaps = [len([curve for layer in found.closing for curve in layer]) for found in (exact, smooth)]
+    gaps = [
+        len([curve for layer in slicing.closing for curve in layer]) for slicing in (exact, smooth)
+    ]
     assert gaps[1] <= gaps[0]
 
 
-def test_where_fronts_turn_little_nothing_is_changed():
+def test_smoothing_keeps_fronts_without_corners():
     wall = ball(HalfSpace(np.array([0.0, 0.0, -5.0]), np.array([0.1, 0.3, 1.0])), 2500)
     exact, smooth = (
-        fronts.slice_layers(wall, 2.0, how).fronts for how in (None, Smoothing(BAND, LIMIT))
+        fronts.slice_layers(wall, 2.0, smoothing).fronts
+        for smoothing in (None, Smoothing(BAND, LIMIT))
     )
     assert len(exact) == len(smooth)
-    for one, other in zip(
+    for exact_layer, smooth_layer in zip(
         exact, smooth
-    ):  # circles; the last ones turn more than asked, and by nothing can be helped
-        assert brute(one[0].at(one[0].refined(4))[0], other) == pytest.approx(0.0, abs=1e-3)
+    ):  # circles; the last ones exceed the limit, and no distance within the band helps
+        assert brute(
+            exact_layer[0].at(exact_layer[0].refined(4))[0], smooth_layer
+        ) == pytest.approx(0.0, abs=1e-3)

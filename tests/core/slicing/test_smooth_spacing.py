@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers free of corners: the band is held everywhere, the turn is what it says, and without need nothing is changed."""
+"""Layers without corners: the distance stays in the band, the turn equals the reported one, and
+smooth layers stay unchanged."""
 
 import numpy as np
 import pytest
@@ -16,16 +17,18 @@ HEIGHT, BAND = 5.0, 0.2
 
 
 @pytest.fixture(scope="module")
-def first():
+def first_layer():
     return intersect_implicit(
         TORUS, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(TORUS, 360)
     )
 
 
-@pytest.mark.parametrize("degrees, reached", [(6.0, 6.0), (2.0, 4.0)])
-def test_the_bend_is_built_without_a_corner_within_the_band(first, degrees, reached):
-    layers = smooth_spacing.layers(TORUS, first, HEIGHT, 0.5 * np.pi, BAND, np.radians(degrees))
-    below = first
+@pytest.mark.parametrize("degrees, max_degrees", [(6.0, 6.0), (2.0, 4.0)])
+def test_layers_of_the_bend_have_no_corners_within_the_band(first_layer, degrees, max_degrees):
+    layers = smooth_spacing.layers(
+        TORUS, first_layer, HEIGHT, 0.5 * np.pi, BAND, np.radians(degrees)
+    )
+    below = first_layer
     for smoothed in layers:
         distance = local_distances(smoothed.layer, below, 10)[1]
         assert distance.min() >= (1.0 - BAND) * HEIGHT
@@ -34,57 +37,57 @@ def test_the_bend_is_built_without_a_corner_within_the_band(first, degrees, reac
             (distance.min(), distance.max()), abs=1e-3
         )
         assert not len(smoothed.layer.curve.corners)
-        assert smoothed.turn <= np.radians(reached)
+        assert smoothed.turn <= np.radians(max_degrees)
         below = smoothed.layer
-    exact = constant_distance.layers(TORUS, first, HEIGHT, 0.5 * np.pi)
-    sharpest = [smooth_spacing.turns_in_wall(TORUS, layer).max() for layer in exact[6:]]
-    assert min(sharpest) > np.radians(
+    exact = constant_distance.layers(TORUS, first_layer, HEIGHT, 0.5 * np.pi)
+    exact_turns = [smooth_spacing.turns_in_wall(TORUS, layer).max() for layer in exact[6:]]
+    assert min(exact_turns) > np.radians(
         200.0
     )  # a corner of 69 degrees or more over the first arc behind it
     assert abs(len(layers) + 1 - len(exact)) <= 1
 
 
-def test_wherever_the_search_begins_it_finds_a_layer_that_keeps_the_limit(first):
+def test_every_start_of_the_search_finds_a_layer_within_the_limit(first_layer):
     grid, limit = even_grid(TORUS, 360), np.radians(5.0)
-    found = [
-        smooth_spacing.next_layer(TORUS, first, HEIGHT, grid, BAND, limit, weight=k).turn
+    turns = [
+        smooth_spacing.next_layer(TORUS, first_layer, HEIGHT, grid, BAND, limit, weight=k).turn
         for k in range(len(smooth_spacing.WEIGHTS))
     ]
-    assert max(found) <= limit
+    assert max(turns) <= limit
     narrow = [
-        smooth_spacing.next_layer(TORUS, first, HEIGHT, grid, 0.01, 1e-3, weight=k)
+        smooth_spacing.next_layer(TORUS, first_layer, HEIGHT, grid, 0.01, 1e-3, weight=k)
         for k in range(0, 12, 4)
     ]
     assert all(
         layer.min_distance >= 0.99 * HEIGHT and layer.max_distance <= 1.01 * HEIGHT
         for layer in narrow
-    )  # the band holds
-    assert min(layer.turn for layer in narrow) > 1e-3  # and it is told what that costs
+    )  # within the band
+    assert min(layer.turn for layer in narrow) > 1e-3  # and the result reports the exceeded limit
 
 
-def test_where_the_front_is_smooth_anyway_its_distance_stays(first):
+def test_a_smooth_front_keeps_its_distance(first_layer):
     (layer,) = smooth_spacing.layers(
-        TORUS, first, HEIGHT, first.u.min() + 1e-6, BAND, np.radians(6.0)
+        TORUS, first_layer, HEIGHT, first_layer.u.min() + 1e-6, BAND, np.radians(6.0)
     )
     assert (layer.min_distance, layer.max_distance) == pytest.approx((HEIGHT, HEIGHT), abs=0.02)
-    exact = constant_distance.next_layer(TORUS, first, HEIGHT, even_grid(TORUS, 360))
+    exact = constant_distance.next_layer(TORUS, first_layer, HEIGHT, even_grid(TORUS, 360))
     assert exact.curve.nearest(layer.layer.curve.points)[0] == pytest.approx(0.0, abs=0.02)
 
 
 def test_the_turn_within_the_wall_is_the_geodesic_curvature():
-    still = np.zeros(181)
+    zeros = np.zeros(181)
     disc = Cone(20.0, 0.5 * np.pi)
-    ring = WallLayer.of(disc, even_grid(disc, 180), still + 10.0, still, still)
+    ring = WallLayer.of(disc, even_grid(disc, 180), zeros + 10.0, zeros, zeros)
     assert smooth_spacing.turns_in_wall(disc, ring) == pytest.approx(1.0 / 30.0, rel=1e-3)
     tube = cylinder(20.0)
-    hoop = WallLayer.of(tube, even_grid(tube, 180), still, still, still)
+    hoop = WallLayer.of(tube, even_grid(tube, 180), zeros, zeros, zeros)
     assert smooth_spacing.turns_in_wall(tube, hoop) == pytest.approx(0.0, abs=1e-9)
     cone = Cone(20.0, 0.3)
-    ring = WallLayer.of(cone, even_grid(cone, 180), still, still, still)
+    ring = WallLayer.of(cone, even_grid(cone, 180), zeros, zeros, zeros)
     assert smooth_spacing.turns_in_wall(cone, ring) == pytest.approx(np.sin(0.3) / 20.0, rel=1e-3)
 
 
-def test_a_corner_counts_with_its_whole_turn():
+def test_a_corner_counts_with_its_full_turn():
     tube, v = cylinder(20.0), even_grid(cylinder(20.0), 180)
     rise = np.where(v[:-1] < np.pi, 8.0, -8.0)
     zigzag = WallLayer.of(
@@ -97,6 +100,6 @@ def test_a_corner_counts_with_its_whole_turn():
     assert np.delete(turns, [0, 90]) == pytest.approx(0.0, abs=1e-4)
 
 
-def test_what_the_wall_cannot_hold_is_refused(first):
+def test_a_layer_height_above_the_wall_is_rejected(first_layer):
     with pytest.raises(InputError, match="layer height"):
-        smooth_spacing.layers(TORUS, first, 200.0, 0.5 * np.pi)
+        smooth_spacing.layers(TORUS, first_layer, 200.0, 0.5 * np.pi)

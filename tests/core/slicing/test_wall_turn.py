@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How sharply a circle and an ellipse turn in their plane, also with nodes that lie on one another but for rounding."""
+"""How sharply a circle and an ellipse turn in their plane, also with nodes that coincide except for
+rounding."""
 
 import numpy as np
 import pytest
@@ -10,10 +11,11 @@ from freecad_am.core.slicing.wall_directions import turns_in_wall
 SKEW = 1e-3  # rad, of the tangents where two nodes nearly coincide
 
 
-def ellipse(a, b, nodes, near=(), closed=True):
-    """Nodes at even angles, and after those of the numbers `near` one more a nanometre on, its tangent askew."""
+def ellipse(a, b, nodes, doubled=(), closed=True):
+    """Nodes at equal angles, with one more a nanometre after each node in `doubled`, its tangent
+    rotated by SKEW."""
     w = np.linspace(0.0, 2.0 * np.pi if closed else np.pi, nodes)
-    w = np.sort(np.r_[w, w[list(near)] + 1e-6 / max(a, b)])
+    w = np.sort(np.r_[w, w[list(doubled)] + 1e-6 / max(a, b)])
     points = np.stack([a * np.cos(w), b * np.sin(w), np.zeros(len(w))], axis=1)
     slope = np.stack([-a * np.sin(w), b * np.cos(w), np.zeros(len(w))], axis=1)
     for k in np.flatnonzero(np.diff(w) < 1e-5) + 1:
@@ -23,19 +25,19 @@ def ellipse(a, b, nodes, near=(), closed=True):
     return SpaceCurve(w, points, slope, slope, closed)
 
 
-def rates(curve):
+def measure_rates(curve):
     return turns_in_wall(curve, np.tile([0.0, 0.0, 1.0], (len(curve.points), 1)))
 
 
-@pytest.mark.parametrize("near", [(), (5,), (0,), (98,), (5, 6, 40)])
+@pytest.mark.parametrize("doubled", [(), (5,), (0,), (98,), (5, 6, 40)])
 @pytest.mark.parametrize("closed", [True, False])
-def test_a_circle_turns_by_its_curvature(near, closed):
-    found = rates(ellipse(50.0, 50.0, 100, near, closed))
+def test_a_circle_turns_by_its_curvature(doubled, closed):
+    turn_rates = measure_rates(ellipse(50.0, 50.0, 100, doubled, closed))
     step = (2.0 if closed else 1.0) * np.pi * 50.0 / 99.0
-    assert found == pytest.approx(1.0 / 50.0, abs=1.05 * SKEW / step + 1e-5)
+    assert turn_rates == pytest.approx(1.0 / 50.0, abs=1.05 * SKEW / step + 1e-5)
 
 
-def test_the_sharpest_place_of_an_ellipse_stays_where_it_is():
-    found = rates(ellipse(40.0, 10.0, 2001, (500,)))
-    assert found.max() == pytest.approx(40.0 / 10.0**2, rel=0.01)
-    assert np.argmax(found) in (0, len(found) - 1, 1000, 1001, 999, 1002)
+def test_the_sharpest_point_of_an_ellipse_keeps_its_position():
+    turn_rates = measure_rates(ellipse(40.0, 10.0, 2001, (500,)))
+    assert turn_rates.max() == pytest.approx(40.0 / 10.0**2, rel=0.01)
+    assert np.argmax(turn_rates) in (0, len(turn_rates) - 1, 1000, 1001, 999, 1002)
