@@ -3,6 +3,7 @@
 measures their visibility. LOOKS_FOLDER names the folder for the pictures and for `looks.json`, a
 list of faults."""
 
+import importlib
 import json
 import os
 import sys
@@ -14,6 +15,10 @@ import FreeCAD as App
 import FreeCADGui as Gui
 import numpy as np
 from PySide import QtCore, QtGui
+
+shiboken = importlib.import_module(
+    "shiboken2" if QtCore.qVersion().startswith("5") else "shiboken6"
+)
 
 FOLDER = Path(os.environ["LOOKS_FOLDER"])
 sys.path.insert(0, os.environ["LOOKS_ROOT"])
@@ -214,12 +219,17 @@ def scrolled(panel):
 
 
 def cancel():
-    """Close the task panel by its button, so that it removes its preview."""
-    for box in present(QtGui.QDialogButtonBox, Gui.getMainWindow()):
-        button = box.button(QtGui.QDialogButtonBox.Cancel)
-        if box.isVisible() and button is not None:
-            button.click()
-            return
+    """Close the task panel by its button, so that it removes its preview.
+
+    Python keeps wrappers of found widgets and would use them for later widgets at the same address.
+    """
+    boxes = present(QtGui.QDialogButtonBox, Gui.getMainWindow())
+    buttons = [box.button(QtGui.QDialogButtonBox.Cancel) for box in boxes if box.isVisible()]
+    buttons = [button for button in buttons if button is not None]
+    if buttons:
+        buttons[0].click()
+    for widget in (*buttons, *boxes):
+        shiboken.invalidate(widget)
 
 
 def panels():
