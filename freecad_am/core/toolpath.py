@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -216,7 +216,8 @@ class Bead:
     `run_on` applies; on an open bead, the applied shape; or None. external: (n, k) external axis values, rad; None
     until planned. phase: (n,) segment phases, see `motion.PHASES`; None until planned. settings:
     (n,) settings by place on the segment that ends at the point, as the sum of 2^entry of
-    `process.settings`; None without settings.
+    `process.settings`; None without settings. wire_feeds: mm/s of wire by such a sum if the feed
+    differs by place, else None.
     """
 
     points: Array
@@ -235,6 +236,7 @@ class Bead:
     phase: Array | None = None
     scarf: Scarf | None = None
     settings: Array | None = None
+    wire_feeds: Mapping[int, float] | None = None
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -510,6 +512,26 @@ def settings_of(bead: Bead) -> Array:
     if bead.settings is None:
         return np.zeros(len(bead))
     return np.asarray(np.r_[bead.settings[1], bead.settings[1:]])
+
+
+def wire_of(bead: Bead) -> Array:
+    """Return the wire feed on the segments that end at the points of a bead.
+
+    Parameters
+    ----------
+    bead : Bead
+        The bead of n points.
+
+    Returns
+    -------
+    (n,) array
+        Feeds, mm/s; NaN if the feed is the same along all beads.
+    """
+    if bead.wire_feeds is not None:
+        combinations, index = np.unique(settings_of(bead).astype(int), return_inverse=True)
+        feeds = np.array([bead.wire_feeds[active] for active in combinations.tolist()])
+        return np.asarray(feeds[np.ravel(index)])
+    return np.full(len(bead), np.nan) if bead.wire_share is None else bead.wire_share * bead.speed
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,7 @@ def wire_refused(no_wire: str) -> InputError:
     return InputError(
         "NO_WIRE_OUTPUT",
         "process.wire.feed_mode",
-        "{}; use constant, or another controller",
+        "{}; use constant and one wire feed in all places, or another controller",
         no_wire,
     )
 

@@ -30,8 +30,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Analogue output for the wire speed, if the wire feed follows the travel speed.</source>
-        <translation>Sortie analogique pour la vitesse du fil, si l&apos;avance du fil suit la vitesse d&apos;avance.</translation>
+        <source>Analogue output for the wire speed, if the wire feed follows the travel speed or differs by place.</source>
+        <translation>Sortie analogique pour la vitesse du fil, si le dévidage suit la vitesse d&apos;avance ou diffère selon l&apos;endroit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -1793,8 +1793,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Analogue output for the wire speed, if the wire feed follows the travel speed.</source>
-        <translation>Sortie analogique pour la vitesse du fil, si l&apos;avance du fil suit la vitesse d&apos;avance.</translation>
+        <source>Analogue output for the wire speed, if the wire feed follows the travel speed or differs by place.</source>
+        <translation>Sortie analogique pour la vitesse du fil, si le dévidage suit la vitesse d&apos;avance ou diffère selon l&apos;endroit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/new_job.py"/>
@@ -10667,6 +10667,11 @@
         <translation>process.start ou process.end fixe la vitesse d&apos;avance là où le biseau le fait ; supprimez le biseau, ou leur travel_speed</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/classes.py"/>
+        <source>process.wire.feed_mode: proportional makes the wire feed follow the travel speed; use constant, or remove the wire feed of the place</source>
+        <translation>process.wire.feed_mode : proportional fait suivre la vitesse d&apos;avance au fil ; utilisez constant, ou retirez le dévidage de l&apos;endroit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/program.py"/>
         <source>program</source>
         <translation>programme</translation>
@@ -11505,6 +11510,11 @@
         <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
         <source>the bead has only one point; give at least two points</source>
         <translation>le cordon n&apos;a qu&apos;un point ; donnez au moins deux points</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/classes.py"/>
+        <source>the bead model is for one wire feed; remove the wire feed of the place, or use bead_model: none</source>
+        <translation>le modèle de cordon vaut pour un seul dévidage ; retirez le dévidage de l&apos;endroit, ou utilisez bead_model : none</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
@@ -17317,6 +17327,11 @@
         <translation>{0} : là où des facettes se rencontrent sous un angle la paroi est lissée, jusqu&apos;à {1} mm de celles-ci, en {2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/wire.py"/>
+        <source>{0}: the wire feeds {1} mm3/s, but the beads need {2} mm3/s at their travel speed; set the wire feed of the place to {3} mm/s or to auto, or correct its travel speed</source>
+        <translation>{0} : le fil apporte {1} mm3/s, mais les cordons demandent {2} mm3/s à leur vitesse d&apos;avance ; réglez le dévidage de l&apos;endroit sur {3} mm/s ou sur auto, ou corrigez sa vitesse d&apos;avance</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
         <source>{0}: these entries are ignored, as they define no shape: {1}</source>
         <translation>{0} : ces entrées sont ignorées, car elles ne définissent aucune forme : {1}</translation>
@@ -17473,8 +17488,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0}; use constant, or another controller</source>
-        <translation>{0} ; utilisez constant, ou une autre commande</translation>
+        <source>{0}; use constant and one wire feed in all places, or another controller</source>
+        <translation>{0} ; utilisez constant et un seul dévidage à tous les endroits, ou une autre commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>

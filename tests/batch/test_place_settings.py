@@ -177,6 +177,10 @@ def test_a_saved_document_keeps_places_and_follows_their_solid(workshop):
         ("{where: {layers: [0, 1]}}", "settings[0].process", "nothing"),
         ("{where: {layers: [0, 1]}, process: {bead_width: 4}}", "settings[0].process.bead_width", "vary"),
         ("{where: {layers: [0, 1]}, process: {seam: {angle: 4}}}", "settings[0].process.seam", "yet"),
+        ("{where: {layers: [0, 1]}, process: {wire: 4}}", "settings[0].process.wire", "section"),
+        ("{where: {layers: [0, 1]}, process: {wire: {diameter: 4}}}", "settings[0].process.wire.diameter", "vary"),
+        ("{where: {layers: [0, 1]}, process: {wire: {feed: -4}}}", "settings[0].process.wire.feed", "range"),
+        ("{where: {layers: [0, 1]}, process: {wire: {feed: 1 kg}}}", "settings[0].process.wire.feed", "kg"),
         ("{where: {layers: [0, 1]}, strategy: {layer_height: 4}}", "settings[0].strategy.layer_height", "vary"),
         ("{where: {layers: [0, 1]}, process: {travel_speed: -4}}", "settings[0].process.travel_speed", "range"),
         ("{where: {layers: [0, 1]}, process: {schedule: 1.5}}", "settings[0].process.schedule", "whole"),
@@ -209,6 +213,31 @@ def test_other_wrong_settings_are_named(workshop):
     assert "is not a solid, so it has no inside" in refusal(workshop)
     write(workshop, SETTINGS.replace("Face1", "Face99"))
     assert "has no Face99; it has Face1 to Face6" in refusal(workshop)
+
+
+def test_the_wire_feed_of_a_place_reaches_the_rows(workshop):
+    settings = """\
+settings:
+  - where: {height: [3 mm, null]}
+    process: {travel_speed: 3 mm/s, wire: {feed: auto}}
+  - where: {inside: {box: [-1, 14, -1, 40, 40, 1]}}
+    process: {wire: {feed: 2.4 m/min}}
+"""
+    job = JOB.replace("  schedule: 9\n", "").replace(", schedule: 3}", "}")
+    write(workshop, settings, job.replace("program: {post: fanuc, schedule: {output: 5}}\n", ""))
+    done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    rows = rows_of(workshop.folder / "out" / "waypoints.csv")
+    rows = [row for row in rows if row["kind"] == "deposit" and row["point"] != "0"]
+    report = json.loads((workshop.folder / "out" / "report.json").read_text())
+    nominal = report["process"]["wire"]["feed_mm_s"]
+    wanted = {"": nominal, "0": 0.5 * nominal, "1": 40.0}
+    feed = numbers(rows, "wire_feed_mm_s")[:, 0]
+    np.testing.assert_allclose(feed, [wanted[row["setting"]] for row in rows], atol=1e-6)
+    assert {row["setting"] for row in rows} == {"", "0", "1"}
+    modelled = JOB.replace("  schedule: 9\n", "  bead_model: csw\n").replace("  classes:", "  #")
+    write(workshop, settings.replace("travel_speed: 3 mm/s, ", ""), modelled)
+    assert "the bead model is for one wire feed" in refusal(workshop)
 
 
 def refusal(workshop):

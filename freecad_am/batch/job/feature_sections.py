@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -119,26 +120,42 @@ def settings_of(section: Any, part_section: Any) -> PlaceSettings:
 def _place_values(entry: dict[str, Any], where: str) -> dict[str, Any]:
     """What an entry sets. Raises InputError for keys that cannot vary by place."""
     values: dict[str, Any] = {}
-    for name, allowed in by_place.SECTIONS.items():
+    for name in by_place.SECTIONS:
         if entry.get(name) in (None, {}):
             continue
         section = fields.mapping(entry[name], f"{where}.{name}")
-        for key, value in section.items():
-            if key in allowed:
-                kind = by_place.SPECS[key].kind
-                dotted_key = f"{where}.{name}.{key}"
-                # the setting checks numbers
-                values[key] = value if kind == f.COUNT else quantities.read(value, kind, dotted_key)
-                continue
-            raise InputError(
-                "NOT_YET" if key in by_place.FUTURE_KEYS[name] else "UNKNOWN_KEY",
-                f"{where}.{name}.{key}",
-                "{!r} cannot vary by place{}; use one of {}, or set it for the whole job",
-                key,
-                Word(" yet" if key in by_place.FUTURE_KEYS[name] else ""),
-                ", ".join(by_place.VALUE_KEYS),
-            )
+        for key, value in _nested(section, name, where):
+            field = by_place.JOB_KEYS.get(key)
+            if field is None:
+                future = key.startswith(by_place.FUTURE_KEYS)
+                raise InputError(
+                    "NOT_YET" if future else "UNKNOWN_KEY",
+                    f"{where}.{key}",
+                    "{!r} cannot vary by place{}; use one of {}, or set it for the whole job",
+                    key.partition(".")[2],
+                    Word(" yet" if future else ""),
+                    ", ".join(by_place.JOB_KEYS),
+                )
+            values[field] = _place_value(value, by_place.SPECS[field], f"{where}.{key}")
     return values
+
+
+def _nested(section: dict[str, Any], name: str, where: str) -> Iterator[tuple[str, Any]]:
+    """Yield the dotted keys of a section that may vary by place, and the values."""
+    for key, value in section.items():
+        dotted_key = f"{name}.{key}"
+        if any(other.startswith(f"{dotted_key}.") for other in by_place.JOB_KEYS):
+            inner = fields.mapping(value, f"{where}.{dotted_key}")
+            yield from _nested(inner, dotted_key, where)
+        else:
+            yield dotted_key, value
+
+
+def _place_value(value: Any, spec: f.Spec, key: str) -> Any:
+    """Return the value of an entry in inner units; the setting checks its range."""
+    if value in spec.words or spec.kind == f.COUNT:
+        return value
+    return quantities.read(value, spec.kind, key)
 
 
 def _conditions(

@@ -405,12 +405,20 @@ class ProcessParameters:
         ProcessParameters
             The process of the class, with the values of the settings; later ones win.
         """
+        values = self.values_at_place(active)
+        process = self.for_class(name)
+        feed = values.pop("wire_feed", None)
+        if feed is not None:
+            values["wire"] = dataclasses.replace(self.wire, feed=feed)
+        return dataclasses.replace(process, **values) if values else process
+
+    def values_at_place(self, active: int) -> dict[str, Any]:
+        """Return the values of settings by place, by field; of several, the last. active: sum of 2^entry."""
         values: dict[str, Any] = {}
         # a motion that is stale may have more of them
         for number in by_place.entries_of(active & (1 << len(self.settings)) - 1):
             values |= self.settings[number].own_values()
-        process = self.for_class(name)
-        return dataclasses.replace(process, **values) if values else process
+        return values
 
     @property
     def weaves(self) -> bool:

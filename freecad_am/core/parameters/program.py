@@ -60,7 +60,8 @@ class NcParameters:
     wire_output: int = f.parameter(
         1,
         f.COUNT,
-        "Analogue output for the wire speed, if the wire feed follows the travel speed.",
+        "Analogue output for the wire speed, if the wire feed follows the travel speed or "
+        "differs by place.",
         low=1,
         high=64,
     )

@@ -16,15 +16,37 @@ from .records import SEPARATOR, Records, entry, numbers, split
 
 WHERE = "settings"
 MAX_SETTINGS = 52  # the places of a row are the bits of one float
-VALUE_KEYS = ("travel_speed", "schedule", "weave", "lead_on", "lead_off")  # of the process
-# sections of an entry with the keys that they may have, and those that are not supported yet
-SECTIONS = {"process": VALUE_KEYS, "strategy": (), "build_direction": ()}
-FUTURE_KEYS = {
-    "process": ("wire", "seam"),
-    "strategy": ("fill", "fill_angle", "fill_density", "walls", "narrowest", "widest"),
-    "build_direction": ("lead", "tilt"),
+SECTIONS = ("process", "strategy", "build_direction")  # of an entry, besides its place
+# the values of an entry by their key in a job
+JOB_KEYS = {
+    "process.travel_speed": "travel_speed",
+    "process.schedule": "schedule",
+    "process.weave": "weave",
+    "process.lead_on": "lead_on",
+    "process.lead_off": "lead_off",
+    "process.wire.feed": "wire_feed",
 }
-SPECS = {name: bead_classes.SPECS[name] for name in VALUE_KEYS}
+VALUE_KEYS = tuple(JOB_KEYS.values())
+# sections, and keys, that no entry can have yet
+FUTURE_KEYS = (
+    "process.seam",
+    *(
+        f"strategy.{key}"
+        for key in ("fill", "fill_angle", "fill_density", "walls", "narrowest", "widest")
+    ),
+    "build_direction.lead",
+    "build_direction.tilt",
+)
+SPECS = {
+    **{name: bead_classes.SPECS[name] for name in VALUE_KEYS if name in bead_classes.SPECS},
+    "wire_feed": f.Spec(
+        f.SPEED,
+        "Wire feed; auto: the feed for the bead width and layer height at the travel speed.",
+        low=0.0,
+        words=("auto",),
+        optional=True,
+    ),
+}
 _FORM = (
     "write it as in: layers 0 to 4: travel_speed 4, schedule 3; height 20 to 35 and inside Zone: "
     "lead_on 0.5; box 0 0 0 10 20 30: weave 2; faces Face7 Face8 within 8: travel_speed 5"
@@ -67,6 +89,7 @@ class Setting:
     weave: int | None = _value("weave")
     lead_on: float | None = _value("lead_on")
     lead_off: float | None = _value("lead_off")
+    wire_feed: float | str | None = _value("wire_feed")
 
     def __post_init__(self) -> None:
         # JSON has lists
@@ -78,9 +101,9 @@ class Setting:
         if not self.conditions():
             raise _wrong("where", "it has no condition; give layers, height, inside or faces")
         if not self.own_values():
-            raise _wrong("process", "it sets nothing; give one of {}", ", ".join(VALUE_KEYS))
-        for key, value in self.own_values().items():
-            f.check_value(SPECS[key], value, f"{WHERE}.process.{key}")
+            raise _wrong("process", "it sets nothing; give one of {}", ", ".join(JOB_KEYS))
+        for key, name in JOB_KEYS.items():
+            f.check_value(SPECS[name], getattr(self, name), f"{WHERE}.{key}")
 
     def _check_ranges(self) -> None:
         for key, low, high in (
@@ -153,8 +176,12 @@ class Setting:
             yield f"faces {' '.join(self.faces)} within {self.within:.12g}"
 
     def __str__(self) -> str:
-        values = (f"{key} {value:.12g}" for key, value in self.own_values().items())
+        values = (f"{key} {_value_text(value)}" for key, value in self.own_values().items())
         return f"{' and '.join(self.conditions())}: {', '.join(values)}"
+
+
+def _value_text(value: Any) -> str:
+    return value if isinstance(value, str) else f"{value:.12g}"
 
 
 def _wrong(key: str, message: str, *values: Any) -> InputError:
@@ -186,11 +213,13 @@ def _parse_one(text: str) -> Setting:
                 key,
                 ", ".join(SPECS),
             )
-        values[key] = _number(key, number, value)
+        values[key] = _parse_value(key, number.strip(), value)
     return Setting(**values)
 
 
-def _number(key: str, number: str, text: str) -> float:
+def _parse_value(key: str, number: str, text: str) -> float | str:
+    if number in SPECS[key].words:
+        return number
     try:
         value = float(number)
     except ValueError:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -80,31 +81,43 @@ def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int
     tuple of (float, int, int) or None
         Deviation, layer and bead; None if wire feed or bead width is unknown.
     """
-    wire_rate = (toolpath.wire_feed or 0.0) * process.wire.section
-    by_wire_ = [
-        rate_of_class for rate_of_class in taken_of(toolpath) if by_wire(rate_of_class, process)
-    ]
-    if not by_wire_ or wire_rate == 0.0:
-        return None
     follows = follows_speed(toolpath)  # mm3 per mm
-    return max(
+    deviations = [
         (
-            (
-                abs(
-                    (
-                        wire_rate / process.travel_speed / rate_of_class.section
-                        if follows
-                        else wire_rate / rate_of_class.rate
-                    )
-                    - 1.0
-                ),
-                rate_of_class.layer,
-                rate_of_class.bead,
-            )
-            for rate_of_class in by_wire_
-        ),
-        key=lambda deviation: deviation[0],
-    )
+            abs(
+                (
+                    wire_rate / process.travel_speed / rate_of_class.section
+                    if follows
+                    else wire_rate / rate_of_class.rate
+                )
+                - 1.0
+            ),
+            rate_of_class.layer,
+            rate_of_class.bead,
+        )
+        for rate_of_class in taken_of(toolpath)
+        if by_wire(rate_of_class, process)
+        and (wire_rate := process.wire.section * _feed_of(rate_of_class, toolpath, process)) > 0.0
+    ]
+    return max(deviations, key=lambda deviation: deviation[0], default=None)
+
+
+def _feed_of(rate_of_class: Taken, toolpath: Toolpath, process: ProcessParameters) -> float:
+    """Return the wire feed of a class at its place, mm/s; 0 without wire."""
+    feed = _place_feed(rate_of_class.bead_class, rate_of_class.settings, toolpath, process)
+    return (toolpath.wire_feed or 0.0) if feed is None else feed
+
+
+def _place_feed(
+    name: str, active: int, toolpath: Toolpath, process: ProcessParameters
+) -> float | None:
+    """Return the wire feed that settings by place give, mm/s; None if they give none."""
+    feed = process.values_at_place(active).get("wire_feed")
+    if not isinstance(feed, str):
+        return feed
+    speed = process.at_place(name, active).travel_speed
+    section = (toolpath.bead_width or 0.0) * toolpath.layer_height
+    return section * speed / process.wire.section
 
 
 def follows_speed(toolpath: Toolpath) -> bool:
@@ -234,8 +247,10 @@ def set_wire_feed(
     bead_rate = width * height * speed
     balanced = bead_rate / process.wire.section
     if isinstance(process.wire.feed, str):
-        return _check_classes(_following(replace(toolpath, wire_feed=balanced), process), process)
+        fed_path = _following(replace(toolpath, wire_feed=balanced), process)
+        return _check_classes(_by_place(fed_path, process), process)
     fed_path = _following(replace(toolpath, wire_feed=process.wire.feed), process)
+    fed_path = _by_place(fed_path, process)
     wire_rate = process.wire.feed * process.wire.section
     if (
         wire_rate == 0.0
@@ -299,20 +314,58 @@ def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     )
 
 
+def _by_place(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
+    """Return the toolpath with the wire feeds of settings by place, where any of them holds."""
+    places = [settings_of(bead).astype(int) for _, _, bead in toolpath]
+    combinations = np.unique(np.concatenate(places)).tolist() if places else []
+    if not any("wire_feed" in process.values_at_place(active) for active in combinations):
+        return toolpath
+    nominal = toolpath.wire_feed or 0.0
+    feeds_of_class: dict[str, dict[int, float]] = {}
+    for _, _, bead in toolpath:
+        name = bead.role.bead_class
+        if name not in feeds_of_class:
+            feeds = {
+                active: _place_feed(name, active, toolpath, process) for active in combinations
+            }
+            feeds_of_class[name] = {
+                active: nominal if feed is None else feed for active, feed in feeds.items()
+            }
+    return replace(
+        toolpath,
+        layers=tuple(
+            replace(
+                layer,
+                beads=tuple(
+                    replace(bead, wire_feeds=feeds_of_class[bead.role.bead_class])
+                    for bead in layer.beads
+                ),
+            )
+            for layer in toolpath.layers
+        ),
+    )
+
+
 def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     """Return the toolpath with an issue if the wire feed is unbalanced for some classes or phases.
 
     Classes and phases with a separate schedule are not checked.
     """
     wire_rate = (toolpath.wire_feed or 0.0) * process.wire.section
-    if wire_rate == 0.0 or not _at_other_speeds(process) or follows_speed(toolpath):
+    if not _at_other_speeds(process) or follows_speed(toolpath):
         return toolpath
-    off = [
-        rate_of_class
+    all_off = [
+        (rate_of_class, rate)
         for rate_of_class in taken_of(toolpath)
         if by_wire(rate_of_class, process)
-        and abs(wire_rate - rate_of_class.rate) > TOLERANCE * rate_of_class.rate
+        and (rate := process.wire.section * _feed_of(rate_of_class, toolpath, process)) > 0.0
+        and abs(rate - rate_of_class.rate) > TOLERANCE * rate_of_class.rate
     ]
+    off_by_place = [entry for entry in all_off if _sets_feed(entry[0], process)]
+    toolpath = replace(
+        toolpath, issues=(*toolpath.issues, *_place_issues(off_by_place, process.wire.section))
+    )
+    off = [rate_of_class for rate_of_class, _ in all_off if not _sets_feed(rate_of_class, process)]
     if not off:
         return toolpath
     text = ", ".join(f"{rate_of_class.name} {rate_of_class.rate:.4g}" for rate_of_class in off)
@@ -338,10 +391,37 @@ def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     )
 
 
+def _sets_feed(rate_of_class: Taken, process: ProcessParameters) -> bool:
+    return "wire_feed" in process.values_at_place(rate_of_class.settings)
+
+
+def _place_issues(off: Sequence[tuple[Taken, float]], section: float) -> list[Issue]:
+    """Return warnings about places whose wire feed is unbalanced. section: of the wire, mm2."""
+    return [
+        Issue(
+            WARNING,
+            CODE,
+            Text(
+                "{}: the wire feeds {:.4g} mm3/s, but the beads need {:.4g} mm3/s at their travel "
+                "speed; set the wire feed of the place to {:.4g} mm/s or to auto, or correct its "
+                "travel speed",
+                rate_of_class.name,
+                rate,
+                rate_of_class.rate,
+                rate_of_class.rate / section,
+            ),
+            rate_of_class.layer,
+            rate_of_class.bead,
+        )
+        for rate_of_class, rate in off
+    ]
+
+
 def _at_other_speeds(process: ProcessParameters) -> bool:
-    """Whether any class or phase has a separate travel speed."""
+    """Whether any class, phase or place has a separate travel speed, or a place its own wire feed."""
     named = [process, *(process.for_class(name) for name in CLASSES)]
-    if any(setting.travel_speed is not None for setting in process.settings):
+    keys = {key for setting in process.settings for key in setting.own_values()}
+    if keys & {"travel_speed", "wire_feed"}:
         return True
     return any(
         settings.travel_speed != process.travel_speed or settings.start.there or settings.end.there

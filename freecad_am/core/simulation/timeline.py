@@ -16,7 +16,7 @@ import numpy as np
 from ..motion import Motion
 from ..parameters.bead_classes import CLASSES, number_of
 from ..parameters.process import ProcessParameters
-from ..toolpath import Toolpath, settings_of
+from ..toolpath import Toolpath, settings_of, wire_of
 from ..types import Array, ArrayLike, Integers, Mask
 
 
@@ -126,12 +126,7 @@ def deposit_motion(toolpath: Toolpath, axes: int = 0) -> Motion:
         ),
         joints=np.full((len(position), axes), np.nan),
         duration=np.where(point > 0, step / speed, 0.0),
-        wire=np.concatenate(
-            [
-                np.full(len(b), np.nan) if b.wire_share is None else b.wire_share * b.speed
-                for _, _, b in beads
-            ]
-        ),
+        wire=np.concatenate([wire_of(bead) for _, _, bead in beads]),
         bead_class=np.repeat([number_of(bead.role.bead_class) for _, _, bead in beads], sizes),
         settings=np.concatenate([settings_of(bead) for _, _, bead in beads]).astype(np.int64),
     )
