@@ -298,8 +298,8 @@ class Toolpath(Stage):
             raise InputError(
                 "NOT_YET",
                 f"{obj.Label}.Settings",
-                "settings by place are for one feature yet; remove them, or put each feature in its "
-                "own job",
+                "settings by place support only one feature so far; remove them, or put each "
+                "feature in its own job",
             )
         return zones_of(process.settings, obj.Zones, obj.Feature.Source[0])
 

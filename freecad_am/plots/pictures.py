@@ -227,7 +227,7 @@ def condition(source: Source, rows: Rows) -> tuple[Chart, ...]:
     )
     top = 1.15 * float(np.nanmax(values, initial=0.05))
     chart = Chart(
-        "Condition of the Jacobian (0 is singular)",
+        "Inverse condition number of the Jacobian (0 is singular)",
         rows.quantity,
         Quantity("σmin / σmax"),
         curves,

@@ -135,8 +135,8 @@ def refuse_schedules(
         raise InputError(
             "SCHEDULE",
             "process.schedule",
-            "beads change their schedule on the way, but the controller appears to set outputs "
-            "before the motion reaches the place; change only the speed at start, end and by "
+            "the schedule changes within beads, but the controller appears to set outputs "
+            "before the motion reaches the point; change only the speed at start, end and by "
             "place, or use another controller",
         )
     numbers = [block.number for block in program.blocks if isinstance(block, Schedule)]

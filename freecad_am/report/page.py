@@ -36,7 +36,7 @@ NO_VIEWER = "Open this page in a browser with scripts and WebGL to see the path 
 _PER_METHOD = (
     ("feasible", "feasible"),
     ("objective_value", "objective"),
-    ("condition_min", "smallest condition"),
+    ("condition_min", "smallest inverse condition number"),
     ("planning_time_s", "planning time, s"),
 )
 _PER_AXIS = (
@@ -61,7 +61,7 @@ _MOTION = (
     ("duration_s", "time of all moves, s"),
     ("deposit_s", "deposit at the travel speed, s"),
     ("axis_limited_s", "deposit as fast as the axes can, s"),
-    ("condition_min", "smallest condition"),
+    ("condition_min", "smallest inverse condition number"),
 )
 _MOTION_PER_AXIS = (
     ("speed_ratio_max", "largest share of the speed limit"),
@@ -168,7 +168,9 @@ def _cards(report: dict[str, Any]) -> str:
             )
         )
     if report["joints"] is not None and report["joints"]["condition_min"] is not None:
-        cards.append((figure_text(report["joints"]["condition_min"]), "smallest condition"))
+        cards.append(
+            (figure_text(report["joints"]["condition_min"]), "smallest inverse condition number")
+        )
     boxes = "".join(
         f'<div class="card"><b>{escape(units.text(value))}</b><span>{escape(units.text(word))}</span></div>'
         for value, word in cards

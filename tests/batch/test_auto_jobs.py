@@ -134,7 +134,8 @@ def test_what_stands_on_something_bent_gets_layers_of_its_shape():
     together = propose(Part.makeCompound([blades[0], hub, *blades[1:]]), width=4.0)
     assert (
         together.layers == "planes"
-        and "other solids are on the bend of Solid2: as the substrate" in together.reason
+        and "other solids rest on the curved surface of Solid2; choose it as the substrate"
+        in together.reason
     )
     separate = propose(
         Part.makeCompound([hub, *(blade_.translated(Vector(0, 0, 200)) for blade_ in blades)]),

@@ -295,8 +295,8 @@ def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
         raise InputError(
             "NOT_YET",
             "settings",
-            "settings by place are for one feature yet; remove them, or put each feature in its own "
-            "job",
+            "settings by place support only one feature so far; remove them, or put each feature "
+            "in its own job",
         )
     entries = values["features"]
     if not isinstance(entries, list) or not entries:

@@ -366,9 +366,9 @@ def _refusing(scan: Scan, layer: int, height: float) -> Off:
             raise InputError(
                 "SCAN_MISSES",
                 scan.label,
-                "at {} of {} places in layer {} the scan has no nearby points, first at {}; the "
-                "scan extends over {:.4g} mm, the layer over {:.4g} mm: scan the whole area "
-                "below the layer, or check unit and fit",
+                "at {} of {} positions in layer {} the scan has no nearby points, first at {}; the "
+                "scan extends over {:.4g} mm, the layer over {:.4g} mm: scan the whole area below "
+                "the layer, or check unit and fit",
                 len(bare),
                 len(points),
                 layer,

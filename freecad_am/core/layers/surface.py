@@ -236,7 +236,7 @@ def report_overhangs(slices: Iterable[Slice], strategy: SolidParameters) -> Iter
                         CODE,
                         Text(
                             "{:.4g} mm^2 overhang the layer below by more than {:.4g} deg, the "
-                            "largest piece at {}; deposit a support first, choose another "
+                            "largest region at {}; deposit a support first, choose another "
                             "strategy.direction, or raise strategy.max_overhang",
                             math.fsum(region.area for region in over),
                             math.degrees(strategy.max_overhang),

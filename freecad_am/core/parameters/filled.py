@@ -117,7 +117,7 @@ class FilledParameters(LayerParameters):
     spacing_range: tuple[float, float] = f.parameter(
         (1.0, 1.0),
         f.RATIO_RANGE,
-        "Range of bead widths, as a share of the usual width and spacing, so that contours fill "
+        "Range of bead widths, as a share of the nominal width and spacing, so that contours fill "
         "a region evenly and beads in thin places match its width.",
         low=0.3,
         high=2.0,
@@ -239,8 +239,8 @@ class FilledParameters(LayerParameters):
     narrowest: float = f.parameter(
         0.3,
         f.RATIO,
-        "Smallest width of beads in planes where neighbours leave less space, as a share of "
-        "their usual width; 100 %: beads are never narrowed, and layers get higher there.",
+        "Minimum width of beads in planes where neighbours leave less space, as a share of their "
+        "nominal width; 100 %: beads are never narrowed, and layers get higher there.",
         low=0.1,
         high=1.0,
         advanced=True,
@@ -249,14 +249,14 @@ class FilledParameters(LayerParameters):
         "adaptive",
         f.CHOICE,
         "Width of contours, and of lines inside contours, in planes: adaptive beads follow the "
-        "thickness of a region if this covers the region better; fixed ones have the usual width.",
+        "thickness of a region if this covers the region better; fixed ones have the nominal width.",
         choices=("adaptive", "fixed"),
         advanced=True,
     )
     widest: float = f.parameter(
         1.5,
         f.RATIO,
-        "Greatest width of adaptive beads, as a share of their usual width.",
+        "Maximum width of adaptive beads, as a share of their nominal width.",
         low=1.0,
         high=2.0,
         advanced=True,
@@ -272,7 +272,7 @@ class FilledParameters(LayerParameters):
             raise InputError(
                 "BAD_VALUE",
                 "strategy.spacing_range",
-                "{} excludes 100 %, the usual width; extend the range to include 100 %",
+                "{} excludes 100 %, the nominal width; extend the range to include 100 %",
                 ends,
             )
         if self.fill_density < 1.0 and not FILLS[self.fill].can_be_sparse:

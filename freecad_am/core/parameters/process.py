@@ -60,8 +60,8 @@ class SeamParameters:
     point: Point | None = f.parameter(
         None,
         f.VECTOR,
-        "For position point: x y z in part coordinates, mm; every closed bead starts at its "
-        "place nearest to this point.",
+        "For position point: x y z in part coordinates, mm; every closed bead starts as close to "
+        "this point as possible.",
         records=point_text("process.seam.point", "none"),
         unit="mm",
     )
@@ -75,8 +75,8 @@ class SeamParameters:
     distance: float = f.parameter(
         15.0,
         f.LENGTH,
-        "For position spread: least distance between the start of a closed bead and the starts of "
-        "other beads of its layer and of the layer below.",
+        "For position spread: minimum distance between the start of a closed bead and the starts "
+        "of other beads of its layer and of the layer below.",
         low=0.0,
         open_low=True,
     )
@@ -201,7 +201,7 @@ class MaterialParameters:
     slowest: float | None = f.parameter(
         None,
         f.SPEED,
-        "Slowest travel speed for the material; slower beads are reported.",
+        "Minimum travel speed for the material; slower beads are reported.",
         low=0.0,
         open_low=True,
         optional=True,
@@ -210,7 +210,7 @@ class MaterialParameters:
     fastest: float | None = f.parameter(
         None,
         f.SPEED,
-        "Fastest travel speed for the material; faster beads are reported.",
+        "Maximum travel speed for the material; faster beads are reported.",
         low=0.0,
         open_low=True,
         optional=True,
@@ -338,8 +338,8 @@ class ProcessParameters:
     settings: tuple[Setting, ...] = f.parameter(
         (),
         f.RECORDS,
-        "Settings by place; later ones win, and all win over bead classes, such as: layers 0 to 4: "
-        "travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.",
+        "Settings by place; later entries override earlier ones, and all override bead classes. "
+        "Example: layers 0 to 4: travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.",
         records=by_place.SETTINGS,
     )
 

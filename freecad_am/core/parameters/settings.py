@@ -48,8 +48,8 @@ SPECS = {
     ),
 }
 _FORM = (
-    "write it as in: layers 0 to 4: travel_speed 4, schedule 3; height 20 to 35 and inside Zone: "
-    "lead_on 0.5; box 0 0 0 10 20 30: weave 2; faces Face7 Face8 within 8: travel_speed 5"
+    "write, for example: layers 0 to 4: travel_speed 4, schedule 3; height 20 to 35 and inside "
+    "Zone: lead_on 0.5; box 0 0 0 10 20 30: weave 2; faces Face7 Face8 within 8: travel_speed 5"
 )
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _RANGE = rf"(?:from\s+)?(?P<low>{_NUMBER})?(?:\s*to\s+(?P<high>{_NUMBER}))?"
@@ -201,7 +201,7 @@ def _parse_one(text: str) -> Setting:
     for condition in re.split(r"\s+and\s+", where):
         fields = _condition(condition)
         if fields.keys() & values.keys():
-            raise _wrong("where", "{!r} has a condition twice; give it once", where)
+            raise _wrong("where", "{!r} repeats a condition; give each condition once", where)
         values |= fields
     for value in filter(str.strip, values_text.split(",")):
         key, _, number = value.strip().partition(" ")
@@ -272,7 +272,7 @@ def check_number(settings: Sequence[Setting]) -> None:
         raise InputError(
             "BAD_VALUE",
             WHERE,
-            "{} entries are too many; use at most {}, for instance wider ranges of layers",
+            "there are {} entries; use at most {}, for instance wider ranges of layers",
             len(settings),
             MAX_SETTINGS,
         )

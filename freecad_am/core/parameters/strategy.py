@@ -145,7 +145,7 @@ class SurfaceParameters(LayerParameters):
     bead_turn: float = f.parameter(
         math.radians(6.0),
         f.TURN_RATE,
-        "Turn of the bead within the wall that smooth layers stay below if the band allows.",
+        "Maximum turn of a bead within the wall in smooth layers, if the band allows it.",
         low=0.0,
         open_low=True,
     )

@@ -150,7 +150,7 @@ def height_issue(
         Text(
             "{}beads are predicted {:.3g} to {:.3g} mm high, {:.3g} mm on average, for layers of "
             "{:g} mm{}{}",
-            Word("limited to the speed of the axes, " if as_run else ""),
+            Word("at the speed that the axes reach, " if as_run else ""),
             height["min"],
             height["max"],
             height["mean"],

@@ -395,9 +395,9 @@ class SeamPlacer:
                     WARNING,
                     "SEAM_DISTANCE",
                     Text(
-                        "{} closed bead(s) in {} layer(s) start nearer than process.seam.distance, "
-                        "{:g} mm, to another start, at worst {:.3g} mm in layer {}; use a smaller "
-                        "distance",
+                        "{} closed bead(s) in {} layer(s) start less than process.seam.distance, "
+                        "{:g} mm, from another start, at worst {:.3g} mm in layer {}; use a "
+                        "smaller distance",
                         len(self._short),
                         len({number for _, number in self._short}),
                         seam.distance,
@@ -416,7 +416,7 @@ class SeamPlacer:
                     NO_EFFECT,
                     Text(
                         "process.seam.position: sharpest has no effect: no closed bead turns by "
-                        "{:.3g} deg or more at a point; the beads start by process.seam.angle",
+                        "{:.3g} deg or more at a point; the beads start at process.seam.angle",
                         math.degrees(CORNER),
                     ),
                 )
@@ -427,9 +427,9 @@ class SeamPlacer:
                     WARNING,
                     "SEAM_SIDE",
                     Text(
-                        "{} closed bead(s) are in a plane across process.seam.away_from without "
-                        "a hidden side, and start by process.seam.angle; choose a direction "
-                        "along the layers",
+                        "{} closed bead(s) are normal to process.seam.away_from, so they have no "
+                        "hidden side and start at process.seam.angle; choose a direction along the "
+                        "layers",
                         self._without,
                     ),
                 )
@@ -659,8 +659,8 @@ def _scarf_issues(short: Sequence[int], process: ProcessParameters) -> list[Issu
                 WARNING,
                 "SEAM_SCARF",
                 Text(
-                    "{} closed bead(s) in {} layer(s) are shorter than two scarfs of {:g} mm and "
-                    "have none; use a shorter process.seam.scarf",
+                    "{} closed bead(s) in {} layer(s) are shorter than two scarfs of {:g} mm, so "
+                    "they have no scarf; use a shorter process.seam.scarf",
                     len(short),
                     len(set(short)),
                     process.seam.scarf,
@@ -697,6 +697,6 @@ def _refuse_other_speeds(process: ProcessParameters) -> None:
         raise InputError(
             "BAD_VALUE",
             SCARF,
-            "process.start or process.end sets the travel speed where the scarf does; remove the "
+            "process.start or process.end sets a travel speed that the scarf sets too; remove the "
             "scarf, or their travel_speed",
         )

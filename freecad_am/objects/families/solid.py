@@ -76,9 +76,9 @@ def _propose_for_mesh(part: SelectedPart) -> Proposal:
         return _choose_layers(part, Text("{} is a mesh, to be filled", part.label))
     size = at_least(mesh.opening)
     why = Text(
-        "{} is an open mesh that intersects itself at {} pairs of triangles, as at {}, so a wall "
-        "of one bead is impossible; the mesh is filled, with its {} holes of up to {:.4g} mm "
-        "closed",
+        "{} is an open mesh that intersects itself at {} pairs of triangles, for instance at {}, "
+        "so a wall of one bead is impossible; the mesh is filled, with its {} holes of up to "
+        "{:.4g} mm closed",
         part.label,
         mesh.crossings,
         mesh.crossing,
@@ -241,7 +241,8 @@ def bend_hint(shape: Any) -> str:
     with contextlib.suppress(*kernel.FAULTS):
         if name := carrier(shape.Solids):
             return Text(
-                " (other solids are on the bend of {}: as the substrate it shapes their layers)",
+                " (other solids rest on the curved surface of {}; choose it as the substrate to "
+                "bend their layers)",
                 name,
             )
     return ""

@@ -164,8 +164,8 @@ def _waits_by_speed(inputs: Given) -> bool:
         raise InputError(
             "NOT_YET",
             "strategy.wait",
-            "settings by place that change the travel speed cannot be combined with it yet; use "
-            "strategy.min_layer_time or process.between_layers.wait",
+            "settings by place that change the travel speed cannot be combined with this setting "
+            "yet; use strategy.min_layer_time or process.between_layers.wait",
         )
     return getattr(inputs.strategy, "min_layer_time", 0.0) > 0.0
 

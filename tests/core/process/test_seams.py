@@ -494,10 +494,10 @@ def test_scarfs_that_do_not_fit_are_rejected_or_reported():
     slow_end = BeadEnd(length=5.0, travel_speed=3.0)
     for values, text in (
         ({"wire": WireParameters(feed_mode="proportional")}, "constant wire feed"),
-        ({"end": slow_end}, "where the scarf does"),
+        ({"end": slow_end}, "that the scarf sets too"),
         (
             {"classes": (BeadClass("contour", end_length=5.0, end_travel_speed=3.0),)},
-            "where the scarf",
+            "that the scarf sets",
         ),
     ):
         with pytest.raises(InputError, match=text):

@@ -444,7 +444,7 @@ def orient_triangles(
         raise InputError(
             "NOT_ORIENTABLE",
             label,
-            "the mesh has no consistent inside, as at {}; model the solid again",
+            "the mesh has no consistent inside, for instance at {}; model the solid again",
             where,
         )
     return turned

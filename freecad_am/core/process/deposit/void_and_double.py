@@ -316,7 +316,7 @@ def _issues(layers: Sequence[Layer], max_void: float) -> list[Issue]:
             continue
         assert coverage.void_place is not None
         text = Text(
-            "beads leave {:.3g} % of the section void, the largest place {:.3g} mm wide at {}; "
+            "beads leave {:.3g} % of the section void, the largest void {:.3g} mm wide at {}; "
             "strategy.max_void allows {:.3g} %; set strategy.widths to adaptive, use fill: "
             "contours, narrower beads, or another fill_angle",
             100.0 * coverage.void,

@@ -463,7 +463,7 @@ def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
         WARNING,
         "NO_BEAD",
         Text(
-            "{} place(s) are too narrow for a bead, {:.3g} mm^2 in total; the largest, {:.3g} "
+            "{} region(s) are too narrow for a bead, {:.3g} mm^2 in total; the largest, {:.3g} "
             "mm^2 and {:.3g} mm wide, is at {}; use narrower beads, lower strategy.narrowest, or "
             "make the part thicker there",
             len(bare),
