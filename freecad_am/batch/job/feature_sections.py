@@ -144,7 +144,7 @@ def _nested(section: dict[str, Any], name: str, where: str) -> Iterator[tuple[st
     """Yield the dotted keys of a section that may vary by place, and the values."""
     for key, value in section.items():
         dotted_key = f"{name}.{key}"
-        if any(other.startswith(f"{dotted_key}.") for other in by_place.JOB_KEYS):
+        if any(job_key.startswith(f"{dotted_key}.") for job_key in by_place.JOB_KEYS):
             inner = fields.mapping(value, f"{where}.{dotted_key}")
             yield from _nested(inner, dotted_key, where)
         else:

@@ -91,7 +91,9 @@ def refuse_speeds(process: ProcessParameters) -> None:
 
 def _refuse_wire_feeds(process: ProcessParameters) -> None:
     """Raise InputError NOT_FOR_FAMILY if places set the wire feed although the speed decides it."""
-    number = next((k for k, one in enumerate(process.settings) if one.wire_feed is not None), None)
+    number = next(
+        (k for k, entry in enumerate(process.settings) if entry.wire_feed is not None), None
+    )
     if number is None:
         return
     where = f"settings[{number}].process.wire.feed"
