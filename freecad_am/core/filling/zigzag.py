@@ -278,6 +278,26 @@ class _Turn(NamedTuple):
     shares: Array
 
 
+def is_narrow(region: Region, law: BeadLaw, walls: int) -> bool:
+    """Whether a region is narrow inside its walls, so that contours alone fill it better.
+
+    Parameters
+    ----------
+    region : Region
+        Plane region, mm.
+    law : BeadLaw
+        Width and spacing of beads.
+    walls : int
+        Number of contours around lines, at least 1.
+
+    Returns
+    -------
+    bool
+        Whether lines would hardly be longer than wide.
+    """
+    return region.width < law.width + (2.0 * walls + NARROW - 1.0) * law.spacing
+
+
 def adapt_lines(
     region: Region,
     beads: Beads,
@@ -288,7 +308,7 @@ def adapt_lines(
 ) -> list[PlaneCurve]:
     """Fill a region with lines or zigzags of adaptive width inside contours.
 
-    A region that is narrow inside its walls is filled with contours only.
+    A region that `is_narrow` inside its walls is filled with contours only, whatever the angle.
 
     Parameters
     ----------
@@ -310,7 +330,7 @@ def adapt_lines(
     list of PlaneCurve
         Contours, lines or zigzags, and beads in the remaining gaps; empty if no bead fits.
     """
-    if region.width < law.width + (2.0 * walls + NARROW - 1.0) * law.spacing:
+    if is_narrow(region, law, walls):
         return adapt_contours(region, beads, law)
     curves = adapt_walls(region, beads, law, walls)
     for room in _rooms(region, curves, beads, law):
