@@ -7972,6 +7972,11 @@
         <translation>plage d&apos;angles</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>angles of seams vary by place only for parts of revolution and plane layers; use position: point, sharpest, spread or hidden</source>
+        <translation>l&apos;angle des coutures ne varie selon l&apos;endroit que pour les pièces de révolution et les couches planes ; utilisez position : point, sharpest, spread ou hidden</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>another computation is running; wait for its end, or cancel it</source>
         <translation>un autre calcul est en cours ; attendez sa fin, ou annulez-le</translation>
@@ -10645,11 +10650,6 @@
         <location filename="../../freecad_am/core/process/seams.py"/>
         <source>process.seam.position: {0} has no effect, as no bead is closed; remove process.seam.position</source>
         <translation>process.seam.position : {0} est sans effet : aucun cordon n&apos;est fermé ; supprimez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>process.seam.{0} has no effect with process.seam.position: {1}; remove the key, or use position: {2}</source>
-        <translation>process.seam.{0} est sans effet avec process.seam.position : {1} ; supprimez-le, ou choisissez position : {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
@@ -13775,6 +13775,11 @@
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>the schedule is set ahead of the motion, or has too few outputs for the number</source>
         <translation>le programme de soudage est réglé en avance sur le mouvement, ou a trop peu de sorties pour le numéro</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>the seam of settings[{0}] has no effect, because no closed bead has at least half of its length in its place; enlarge the place, or remove the seam</source>
+        <translation>la couture de settings[{0}] est sans effet, car aucun cordon fermé n&apos;a au moins la moitié de sa longueur à cet endroit ; agrandissez l&apos;endroit, ou supprimez la couture</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
@@ -17195,6 +17200,11 @@
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>{0}. Besides, {1}</source>
         <translation>{0}. De plus, {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>{0}.{1} has no effect with process.seam.position: {2}; remove the key, or use position: {3}</source>
+        <translation>{0}.{1} est sans effet avec process.seam.position : {2} ; supprimez-le, ou choisissez position : {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>

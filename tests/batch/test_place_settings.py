@@ -176,7 +176,9 @@ def test_a_saved_document_keeps_places_and_follows_their_solid(workshop):
         ("{process: {travel_speed: 4}}", "settings[0].where", "missing"),
         ("{where: {layers: [0, 1]}}", "settings[0].process", "nothing"),
         ("{where: {layers: [0, 1]}, process: {bead_width: 4}}", "settings[0].process.bead_width", "vary"),
-        ("{where: {layers: [0, 1]}, process: {seam: {angle: 4}}}", "settings[0].process.seam", "yet"),
+        ("{where: {layers: [0, 1]}, process: {seam: {scarf: 4}}}", "settings[0].process.seam.scarf", "yet"),
+        ("{where: {layers: [0, 1]}, process: {seam: {position: here}}}", "settings[0].process.seam.position", "sharpest"),
+        ("{where: {layers: [0, 1]}, process: {seam: {point: [1, 2]}}}", "settings[0].process.seam.point", "three"),
         ("{where: {layers: [0, 1]}, process: {wire: 4}}", "settings[0].process.wire", "section"),
         ("{where: {layers: [0, 1]}, process: {wire: {diameter: 4}}}", "settings[0].process.wire.diameter", "vary"),
         ("{where: {layers: [0, 1]}, process: {wire: {feed: -4}}}", "settings[0].process.wire.feed", "range"),
@@ -215,9 +217,11 @@ def test_other_wrong_settings_are_named(workshop):
     assert "has no Face99; it has Face1 to Face6" in refusal(workshop)
 
 
-def test_the_wire_feed_of_a_place_reaches_the_rows(workshop):
+def test_wire_feed_and_seam_of_a_place_reach_the_rows(workshop):
     settings = """\
 settings:
+  - where: {layers: [2, null]}
+    process: {seam: {position: point, point: [0, 0, 8]}}
   - where: {height: [3 mm, null]}
     process: {travel_speed: 3 mm/s, wire: {feed: auto}}
   - where: {inside: {box: [-1, 14, -1, 40, 40, 1]}}
@@ -231,10 +235,20 @@ settings:
     rows = [row for row in rows if row["kind"] == "deposit" and row["point"] != "0"]
     report = json.loads((workshop.folder / "out" / "report.json").read_text())
     nominal = report["process"]["wire"]["feed_mm_s"]
-    wanted = {"": nominal, "0": 0.5 * nominal, "1": 40.0}
+    wanted = {"": nominal, "1": 0.5 * nominal, "2": 40.0}
     feed = numbers(rows, "wire_feed_mm_s")[:, 0]
     np.testing.assert_allclose(feed, [wanted[row["setting"]] for row in rows], atol=1e-6)
-    assert {row["setting"] for row in rows} == {"", "0", "1"}
+    assert {row["setting"] for row in rows} == {"", "1", "2"}
+    contours = [
+        row
+        for row in rows_of(workshop.folder / "out" / "waypoints.csv")
+        if row["class"] == "contour"
+    ]
+    starts = [row for row in contours if row["kind"] == "deposit" and row["point"] == "0"]
+    assert {row["layer"] for row in starts} == {"1", "2", "3"}
+    for row in starts:  # contours are half a bead inside
+        is_near = bool(np.all(numbers([row], "x_mm", "y_mm")[0] < 2.1))
+        assert is_near == (int(row["layer"]) >= 2)
     modelled = JOB.replace("  schedule: 9\n", "  bead_model: csw\n").replace("  classes:", "  #")
     write(workshop, settings.replace("travel_speed: 3 mm/s, ", ""), modelled)
     assert "the bead model is for one wire feed" in refusal(workshop)

@@ -136,7 +136,7 @@ def _place_values(entry: dict[str, Any], where: str) -> dict[str, Any]:
                     Word(" yet" if future else ""),
                     ", ".join(by_place.JOB_KEYS),
                 )
-            values[field] = _place_value(value, by_place.SPECS[field], f"{where}.{key}")
+            values[field] = _place_value(value, field, f"{where}.{key}")
     return values
 
 
@@ -151,11 +151,13 @@ def _nested(section: dict[str, Any], name: str, where: str) -> Iterator[tuple[st
             yield dotted_key, value
 
 
-def _place_value(value: Any, spec: f.Spec, key: str) -> Any:
-    """Return the value of an entry in inner units; the setting checks its range."""
-    if value in spec.words or spec.kind == f.COUNT:
-        return value
-    return quantities.read(value, spec.kind, key)
+def _place_value(value: Any, name: str, key: str) -> Any:
+    """Return the value of a field of a setting in inner units; the setting checks its range."""
+    field = next(field for field in dataclasses.fields(Setting) if field.name == name)
+    try:
+        return fields.read_value(f.spec_of(field), field, value, key)
+    except InputError as error:
+        raise InputError(error.code, key, error.message) from None
 
 
 def _conditions(

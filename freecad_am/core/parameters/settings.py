@@ -12,10 +12,11 @@ from typing import Any
 from ..issues import InputError
 from . import bead_classes
 from . import field as f
-from .records import SEPARATOR, Records, entry, numbers, split
+from .records import SEPARATOR, Point, Records, entry, numbers, split
 
 WHERE = "settings"
 MAX_SETTINGS = 52  # the places of a row are the bits of one float
+SEAM_KEYS = ("angle", "step", "position", "point", "away_from", "distance")  # of `process.seam`
 SECTIONS = ("process", "strategy", "build_direction")  # of an entry, besides its place
 # the values of an entry by their key in a job
 JOB_KEYS = {
@@ -25,11 +26,12 @@ JOB_KEYS = {
     "process.lead_on": "lead_on",
     "process.lead_off": "lead_off",
     "process.wire.feed": "wire_feed",
+    **{f"process.seam.{key}": f"seam_{key}" for key in SEAM_KEYS},
 }
 VALUE_KEYS = tuple(JOB_KEYS.values())
 # sections, and keys, that no entry can have yet
 FUTURE_KEYS = (
-    "process.seam",
+    "process.seam.scarf",
     *(
         f"strategy.{key}"
         for key in ("fill", "fill_angle", "fill_density", "walls", "narrowest", "widest")
@@ -46,6 +48,11 @@ SPECS = {
         words=("auto",),
         optional=True,
     ),
+    **{
+        f"seam_{field.name}": dataclasses.replace(f.spec_of(field), optional=True)
+        for field in dataclasses.fields(bead_classes.SeamParameters)
+        if field.name in SEAM_KEYS
+    },
 }
 _FORM = (
     "write, for example: layers 0 to 4: travel_speed 4, schedule 3; height 20 to 35 and inside "
@@ -90,12 +97,22 @@ class Setting:
     lead_on: float | None = _value("lead_on")
     lead_off: float | None = _value("lead_off")
     wire_feed: float | str | None = _value("wire_feed")
+    seam_angle: float | None = _value("seam_angle")
+    seam_step: float | None = _value("seam_step")
+    seam_position: str | None = _value("seam_position")
+    seam_point: Point | None = _value("seam_point")
+    seam_away_from: Point | None = _value("seam_away_from")
+    seam_distance: float | None = _value("seam_distance")
 
     def __post_init__(self) -> None:
         # JSON has lists
         object.__setattr__(self, "faces", tuple(self.faces))
         if self.box is not None:
             object.__setattr__(self, "box", tuple(float(number) for number in self.box))
+        for name in ("seam_point", "seam_away_from"):
+            records = SPECS[name].records
+            assert records is not None
+            object.__setattr__(self, name, records.read(getattr(self, name)))
         self._check_ranges()
         self._check_zones()
         if not self.conditions():
@@ -176,12 +193,18 @@ class Setting:
             yield f"faces {' '.join(self.faces)} within {self.within:.12g}"
 
     def __str__(self) -> str:
-        values = (f"{key} {_value_text(value)}" for key, value in self.own_values().items())
+        values = (
+            f"{key} {_value_text(SPECS[key], value)}" for key, value in self.own_values().items()
+        )
         return f"{' and '.join(self.conditions())}: {', '.join(values)}"
 
 
-def _value_text(value: Any) -> str:
-    return value if isinstance(value, str) else f"{value:.12g}"
+def _value_text(spec: f.Spec, value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, tuple):
+        return numbers(value)
+    return f"{value / f.TO_INNER.get(spec.kind, 1.0):.12g}"
 
 
 def _wrong(key: str, message: str, *values: Any) -> InputError:
@@ -218,7 +241,8 @@ def _parse_one(text: str) -> Setting:
 
 
 def _parse_value(key: str, number: str, text: str) -> float | str:
-    if number in SPECS[key].words:
+    spec = SPECS[key]
+    if number in spec.words or spec.kind in (f.CHOICE, f.VECTOR):
         return number
     try:
         value = float(number)
@@ -226,7 +250,9 @@ def _parse_value(key: str, number: str, text: str) -> float | str:
         raise InputError(
             "BAD_VALUE", WHERE, "{!r} has no number; {}", text.strip(), _FORM
         ) from None
-    return int(value) if SPECS[key].kind == f.COUNT and value.is_integer() else value
+    if spec.kind == f.COUNT and value.is_integer():
+        return int(value)
+    return value * f.TO_INNER.get(spec.kind, 1.0)
 
 
 def _condition(text: str) -> dict[str, Any]:

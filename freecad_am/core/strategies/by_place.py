@@ -351,15 +351,51 @@ def apply_settings(
     """
     if not process.settings:
         return toolpath
-    beads = [bead for _, _, bead in toolpath]
+    spans, active = _find_places(_segments(toolpath, up), toolpath, process, zones)
+    return _cut_toolpath(toolpath, process, spans, active)
+
+
+def prevailing_settings(
+    toolpath: Toolpath, process: ProcessParameters, zones: Sequence[Zone], up: Array
+) -> Integers:
+    """Return the settings that hold on at least half of the length of each bead.
+
+    Parameters
+    ----------
+    toolpath, process, zones, up
+        As in `apply_settings`, which raises the same errors.
+
+    Returns
+    -------
+    (n,) int array
+        Sums of 2^entry, by bead in print order.
+    """
     segments = _segments(toolpath, up)
+    spans, active = _find_places(segments, toolpath, process, zones)
+    counts = [len(bead) - 1 for _, _, bead in toolpath]
+    bead = np.repeat(np.arange(len(counts)), counts)[spans.row]
+    size = lengths(segments.end - segments.start)[spans.row] * (spans.end - spans.begin)
+    total = np.bincount(bead, size, len(counts))
+    prevailing = np.zeros(len(counts), dtype=np.int64)
+    for number in range(len(process.settings)):
+        inside = np.bincount(bead, size * (active >> number & 1), len(counts))
+        prevailing |= (inside >= 0.5 * total - EXACT_MM).astype(np.int64) << number
+    return prevailing
+
+
+def _find_places(
+    segments: _Segments, toolpath: Toolpath, process: ProcessParameters, zones: Sequence[Zone]
+) -> tuple[_Spans, Integers]:
+    """Return the pieces of all segments, and for each piece (k,) the sum of 2^entry of its settings."""
     zones = zones or (Zone(),) * len(process.settings)
     conditions = [
         _conditions(segments, setting, zone)
         for setting, zone in zip(process.settings, zones, strict=True)
     ]
     own_speeds = [setting.travel_speed or 0.0 for setting in process.settings]
-    speeds = np.concatenate([np.maximum(bead.speed[1:], max(own_speeds)) for bead in beads])
+    speeds = np.concatenate(
+        [np.maximum(bead.speed[1:], max(own_speeds)) for _, _, bead in toolpath]
+    )
     spans = _divide_segments(
         segments, [condition for group in conditions for condition in group], speeds
     )
@@ -371,7 +407,7 @@ def apply_settings(
             rows = np.flatnonzero(holds)
             holds[rows] = condition.holds(spans.row[rows], middles[rows])
         active |= holds.astype(np.int64) << number
-    return _cut_toolpath(toolpath, process, spans, active)
+    return spans, active
 
 
 def _segments(toolpath: Toolpath, up: Array) -> _Segments:

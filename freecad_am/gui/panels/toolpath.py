@@ -11,7 +11,7 @@ import numpy as np
 from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
-from ...core.parameters.process import BY_ANGLE, BY_POINT, HIDDEN, SHARPEST, SPREAD
+from ...core.parameters.bead_classes import BY_ANGLE, BY_POINT, HIDDEN, SHARPEST, SPREAD
 from ...core.process import bead_model, wire
 from ...core.process.bead_model import MINUTE, BeadModel
 from ...core.process.wire import Measured

@@ -25,7 +25,7 @@ from ...core.process.cooling_waits import enforce_layer_time, remove_waits
 from ...core.process.deposit.pieces import deposited_twice
 from ...core.process.wire import set_wire_feed
 from ...core.strategies import support
-from ...core.strategies.by_place import Zone, apply_settings
+from ...core.strategies.by_place import Zone, apply_settings, prevailing_settings
 from ...core.strategies.clearance.nozzle_check import CLEARANCE
 from ...core.toolpath import MotionRules, Toolpath
 from ...core.toolpath import Toolpath as CoreToolpath
@@ -137,9 +137,15 @@ def layers_of(inputs: Given) -> CoreToolpath:
     layers = dataclasses.replace(
         layers, issues=(*layers.issues, *seams.unused_issues(layers, process.seam))
     )
+    up = stacking_direction(layers, inputs)
+    if any(key.startswith("seam_") for setting in process.settings for key in setting.own_values()):
+        prevailing = prevailing_settings(layers, process, inputs.zones, up)
+        layers = seams.place_seams_by_place(
+            layers, process, prevailing, _locate_angle(layers, inputs)
+        )
     if model is not None and not family.is_filled:
         layers = model_notes.hold_widths(layers, process, model)
-    layers = apply_settings(layers, process, inputs.zones, stacking_direction(layers, inputs))
+    layers = apply_settings(layers, process, inputs.zones, up)
     toolpath = seams.set_scarfs(classes.set_bead_ends(layers, process), process)
     if not family.is_filled or _waits_by_speed(inputs):
         toolpath = remove_waits(toolpath)
@@ -151,6 +157,16 @@ def layers_of(inputs: Given) -> CoreToolpath:
         toolpath.add_checks(twice=twice),
         rules=MotionRules(process.overlap, process.retreat, inputs.build.max_from_vertical),
     )
+
+
+def _locate_angle(toolpath: CoreToolpath, inputs: Given) -> seams.LocateAngle | None:
+    """Return the rule for starts by angle: about the axis, or in plane layers; else None."""
+    if toolpath.traits.has_axis:
+        return seams.locate_azimuth
+    groups = getattr(inputs.wall, "groups", ())
+    if groups and inputs.wall.has_plane_layers():
+        return seams.locate_farthest(np.asarray(groups[0].base.frame))
+    return None
 
 
 def _waits_by_speed(inputs: Given) -> bool:

@@ -204,11 +204,17 @@ def test_ten_thousand_random_settings():
 
 def test_the_notation_of_panels_and_the_json_of_documents_keep_settings():
     rng = np.random.default_rng(3)
-    texts = "layers 0 to 4: travel_speed 4, schedule 3; layers from 7: weave 0; height to 5 and inside Zone: lead_on 0.5"
+    texts = "layers 0 to 4: travel_speed 4, schedule 3; layers from 7: weave 0; height to 5 and inside Zone: lead_on 0.5; layers 0 to 1: wire_feed auto, seam_position point, seam_point 1 2 3, seam_angle 30"
     settings = SETTINGS.read(texts)
     assert settings[0] == Setting(first_layer=0, last_layer=4, travel_speed=4.0, schedule=3)
     assert settings[1] == Setting(first_layer=7, weave=0)
     assert settings[2] == Setting(high=5.0, inside="Zone", lead_on=0.5)
+    assert settings[3].own_values() == {
+        "wire_feed": "auto",
+        "seam_angle": pytest.approx(np.pi / 6.0),
+        "seam_position": "point",
+        "seam_point": (1.0, 2.0, 3.0),
+    }
     some = tuple(random_setting(rng)[0] for _ in range(100))
     for group in (settings, some):
         assert SETTINGS.read(SETTINGS.to_json(group)) == group
