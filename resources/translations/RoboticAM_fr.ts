@@ -10022,6 +10022,11 @@
         <translation>aucun positionneur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>no setting</source>
+        <translation>aucun réglage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/api.py"/>
         <source>no source</source>
         <translation>pas de source</translation>
@@ -10047,7 +10052,7 @@
         <translation>résultat nodal</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>none</source>
         <translation>aucun</translation>
     </message>
@@ -10965,6 +10970,16 @@
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
         <source>set strategy.layer_height to {0} mm, or reduce the wire feed</source>
         <translation>réglez strategy.layer_height à {0} mm, ou apportez moins de fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>setting</source>
+        <translation>réglage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>setting {0}</source>
+        <translation>réglage {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
