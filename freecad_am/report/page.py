@@ -53,7 +53,7 @@ _SPACING = (
     ("mean_mm", "mean, mm"),
     ("max_mm", "largest, mm"),
     ("length_mm", "length, mm"),
-    ("turn_max_deg_mm", "sharpest turn beside corners, deg/mm"),
+    ("turn_max_deg_mm", "sharpest turn away from corners, deg/mm"),
     ("cornered_layers", "layers with corners"),
     ("corner_max_deg", "sharpest corner, deg"),
 )

@@ -14428,8 +14428,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>there is no layer above {0}: the last layer of {1} is {2}; give a lower layer</source>
-        <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière couche de {1} est {2} ; donnez une couche plus basse</translation>
+        <source>there is no layer above {0}: the last of {1} layers is {2}; give a lower layer</source>
+        <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière des {1} couches est {2} ; donnez une couche plus basse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
@@ -15373,8 +15373,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/collisions.py"/>
-        <source>{0} extends into the platform, a plate {1} mm below the origin of the platform frame; set cell.platform to the real clamping position and cell.platform_diameter to the real size (0 for none)</source>
-        <translation>{0} entre dans le plateau, une plaque de {1} mm sous l&apos;origine du repère posé dessus ; fixez cell.platform là où la pièce est tenue et cell.platform_diameter selon ce qui existe (0 pour aucun)</translation>
+        <source>{0} extends into the platform, a plate of {1} mm diameter below the origin of the platform frame; set cell.platform to the real clamping position and cell.platform_diameter to the real size (0 for none)</source>
+        <translation>{0} entre dans le plateau, une plaque de {1} mm de diamètre sous l&apos;origine du repère posé dessus ; fixez cell.platform là où la pièce est tenue et cell.platform_diameter selon ce qui existe (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>

@@ -255,7 +255,7 @@ def fit_layers(
         raise InputError(
             "NO_LAYER",
             "substrate.after_layer",
-            "there is no layer above {}: the last layer of {} is {}; give a lower layer",
+            "there is no layer above {}: the last of {} layers is {}; give a lower layer",
             first_layer - 1,
             len(toolpath.layers),
             len(toolpath.layers) - 1,
