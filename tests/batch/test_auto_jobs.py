@@ -491,8 +491,8 @@ def test_where_curved_layers_cannot_be_carried_out_there_are_planes(workshop):
         "layer_height: 5 mm, chord_error: 0.1 mm", "layer_height: 8 mm, chord_error: 0.4 mm"
     )
     text = (
-        coarse.replace("auto,", "auto, bead_spacing: 6 mm,")
-        + "process: {bead_width: 6 mm}\n"
+        coarse.replace("auto,", "auto, bead_spacing: 10 mm,")
+        + "process: {bead_width: 10 mm}\n"
         + cell
     )
     report, rows = planned(workshop, text)
