@@ -10982,11 +10982,6 @@
         <translation>réglage {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>settings by place support only one feature so far; remove them, or put each feature in its own job</source>
-        <translation>les réglages par lieu n&apos;admettent pour l&apos;instant qu&apos;un seul élément ; supprimez-les, ou mettez chaque élément dans sa propre tâche</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
         <source>settings by place that change the travel speed cannot be combined with this setting yet; use strategy.min_layer_time or process.between_layers.wait</source>
         <translation>des réglages par lieu qui changent la vitesse d&apos;avance ne peuvent pas encore se combiner avec ce réglage ; utilisez strategy.min_layer_time ou process.between_layers.wait</translation>

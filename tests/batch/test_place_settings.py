@@ -254,6 +254,55 @@ settings:
     assert "the bead model is for one wire feed" in refusal(workshop)
 
 
+@pytest.mark.parametrize("sequence", ["feature", "height"])
+def test_settings_of_several_features_hold_in_the_whole_job(workshop, sequence):
+    """Layers are numbered through, and heights count from the lowest point of all features."""
+    Part.makeBox(20.0, 12.0, 8.0).exportStep(str(workshop.folder / "low.step"))
+    other = Part.makeBox(20.0, 12.0, 6.0, FreeCAD.Vector(40.0, 0.0, 0.0))
+    other.exportStep(str(workshop.folder / "other.step"))
+    zone = Part.makeBox(15.0, 40.0, 20.0, FreeCAD.Vector(30.0, -5.0, -5.0))
+    zone.exportStep(str(workshop.folder / "across.step"))
+    (workshop.folder / "two.yaml").write_text(f"""\
+version: 1
+name: two
+strategy: {{kind: solid, layer_height: 2 mm, bead_spacing: 4 mm, fill: lines, chord_error: 0.1 mm}}
+build_direction: {{clearance: none}}
+process: {{bead_width: 4 mm, travel_speed: 6 mm/s}}
+sequence: {sequence}
+features:
+  - {{name: low, part: {{file: low.step}}}}
+  - {{name: other, part: {{file: other.step}}, strategy: {{layer_height: 3 mm}}, process: {{travel_speed: 9 mm/s}}}}
+settings:
+  - where: {{layers: [2, 3]}}
+    process: {{travel_speed: 2 mm/s}}
+  - where: {{height: [5 mm, null]}}
+    process: {{travel_speed: 3 mm/s}}
+  - where: {{inside: {{file: across.step}}}}
+    process: {{travel_speed: 4 mm/s}}
+  - where: {{layers: [9, null]}}
+    process: {{travel_speed: 5 mm/s}}
+""")
+    done = workshop.run("plan", "two.yaml", "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    assert done.err.count("SETTING_UNUSED") == 1 and "settings[3] has no effect" in done.err
+    rows = rows_of(workshop.folder / "out" / "waypoints.csv")
+    place = numbers(rows, "x_mm", "y_mm", "z_mm")
+    follows = [k for k, row in enumerate(rows) if row["kind"] == "deposit" and row["point"] != "0"]
+    middle = 0.5 * (place[follows] + place[[k - 1 for k in follows]])
+    layer = numbers([rows[k] for k in follows], "layer")[:, 0]
+    height = place[follows, 2] - place[:, 2].min()
+    held = [(layer >= 2) & (layer <= 3), height >= 5.0 - 1e-6, np.abs(middle[:, 0] - 37.5) <= 7.5]
+    last = np.max([np.where(one, k, -1) for k, one in enumerate(held)], axis=0)
+    told = [int(rows[k]["setting"] or -1) for k in follows]
+    np.testing.assert_array_equal(told, last)
+    assert set(told) == {-1, 0, 1, 2}
+    speed = numbers([rows[k] for k in follows], "speed_mm_s")[:, 0]
+    usual = np.where(middle[:, 0] > 30.0, 9.0, 6.0)
+    np.testing.assert_allclose(
+        speed, np.where(last < 0, usual, np.array([2.0, 3.0, 4.0, 0.0])[last])
+    )
+
+
 def refusal(workshop):
     done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
     assert done.status == 2

@@ -19,7 +19,7 @@ from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.process.wire import set_wire_feed
 from freecad_am.core.program import DepositOff, DepositOn, Moves, Schedule, Weave
 from freecad_am.core.simulation.timeline import timeline
-from freecad_am.core.strategies.by_place import apply_settings
+from freecad_am.core.strategies.by_place import Stack, apply_settings
 from freecad_am.core.toolpath import Layer, MotionRules, Toolpath
 from freecad_am.objects.program import refuse
 from freecad_am.posts import catalogue
@@ -69,7 +69,7 @@ def placed(name, process):
     rules = MotionRules(max_from_vertical=setup.most)
     toolpath = Toolpath(layers, np.eye(4), HEIGHT, CHORD_ERROR, family="developable", rules=rules)
     low = min(bead.points[:, 2].min() for _, _, bead in toolpath)
-    toolpath = apply_settings(toolpath, process, (), UP)
+    toolpath = apply_settings(toolpath, process, (), Stack(UP))
     if any(setting.wire_feed is not None for setting in process.settings):
         toolpath = set_wire_feed(dataclasses.replace(toolpath, bead_width=5.0), process, None)
     path = plan_joints(toolpath, cell, JointParameters(degree=1))

@@ -15,6 +15,7 @@ from . import field as f
 from .records import SEPARATOR, Point, Records, entry, numbers, split
 
 WHERE = "settings"
+UNUSED_CODE = "SETTING_UNUSED"  # the issue of a setting that changes nothing
 MAX_SETTINGS = 52  # the places of a row are the bits of one float
 SEAM_KEYS = ("angle", "step", "position", "point", "away_from", "distance")  # of `process.seam`
 SECTIONS = ("process", "strategy", "build_direction")  # of an entry, besides its place

@@ -28,6 +28,7 @@ from ..parameters.bead_classes import (
     SeamParameters,
 )
 from ..parameters.process import ProcessParameters
+from ..parameters.settings import UNUSED_CODE
 from ..toolpath import Bead, Scarf, Toolpath
 from ..types import Array, Integers, Mask
 
@@ -613,7 +614,7 @@ def _unmet_issues(process: ProcessParameters, active: Integers, closed: Mask) ->
     return [
         Issue(
             WARNING,
-            NO_EFFECT,
+            UNUSED_CODE,
             Text(
                 "the seam of settings[{}] has no effect, because no closed bead has at least "
                 "half of its length in its place; enlarge the place, or remove the seam",

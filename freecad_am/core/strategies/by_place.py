@@ -21,11 +21,10 @@ from ..geometry.mesh.triangle_mesh import closest, cut_evenly
 from ..geometry.obstacles import Body
 from ..issues import WARNING, InputError, Issue, Text
 from ..parameters.process import ProcessParameters
-from ..parameters.settings import WHERE, Setting
+from ..parameters.settings import UNUSED_CODE, WHERE, Setting
 from ..toolpath import Bead, Toolpath
 from ..types import Array, Index, Integers, Mask
 
-UNUSED_CODE = "SETTING_UNUSED"
 SURFACE_MM = 1e-4  # mm; points this close to the surface of a solid belong to it
 EXACT_MM = 1e-6  # mm; tolerance of boxes, heights and distances
 MIN_PIECE_MM = 2.5e-3  # mm; a shorter piece would be a move that no controller resolves
@@ -322,8 +321,26 @@ def _conditions(segments: _Segments, setting: Setting, zone: Zone) -> list[_Cond
     return conditions
 
 
+class Stack(NamedTuple):
+    """How layers are counted, and heights measured.
+
+    up: (3,) unit vector of the stacking direction, part coordinates. numbers: (n,) numbers of the
+    layers in a job of several features, None for one. ground: height zero along up, mm; None for
+    the lowest point of the toolpath.
+    """
+
+    up: Array
+    numbers: Index | None = None
+    ground: float | None = None
+
+
+def lowest_point(toolpath: Toolpath, up: Array) -> float:
+    """Return the lowest height of all points along up (3,), mm."""
+    return min(float((bead.points @ up).min()) for _, _, bead in toolpath)
+
+
 def apply_settings(
-    toolpath: Toolpath, process: ProcessParameters, zones: Sequence[Zone], up: Array
+    toolpath: Toolpath, process: ProcessParameters, zones: Sequence[Zone], stack: Stack
 ) -> Toolpath:
     """Return the toolpath with beads cut where settings by place change, at the speeds of their places.
 
@@ -335,8 +352,8 @@ def apply_settings(
         The process with its settings by place.
     zones : sequence of Zone
         The geometry of each setting; empty if no setting has any.
-    up : (3,) array
-        Unit vector of the stacking direction, part coordinates.
+    stack : Stack
+        Stacking direction, and the numbers of the layers.
 
     Returns
     -------
@@ -351,18 +368,18 @@ def apply_settings(
     """
     if not process.settings:
         return toolpath
-    spans, active = _find_places(_segments(toolpath, up), toolpath, process, zones)
+    spans, active = _find_places(_segments(toolpath, stack), toolpath, process, zones)
     return _cut_toolpath(toolpath, process, spans, active)
 
 
 def prevailing_settings(
-    toolpath: Toolpath, process: ProcessParameters, zones: Sequence[Zone], up: Array
+    toolpath: Toolpath, process: ProcessParameters, zones: Sequence[Zone], stack: Stack
 ) -> Integers:
     """Return the settings that hold on at least half of the length of each bead.
 
     Parameters
     ----------
-    toolpath, process, zones, up
+    toolpath, process, zones, stack
         As in `apply_settings`, which raises the same errors.
 
     Returns
@@ -370,7 +387,7 @@ def prevailing_settings(
     (n,) int array
         Sums of 2^entry, by bead in print order.
     """
-    segments = _segments(toolpath, up)
+    segments = _segments(toolpath, stack)
     spans, active = _find_places(segments, toolpath, process, zones)
     counts = [len(bead) - 1 for _, _, bead in toolpath]
     bead = np.repeat(np.arange(len(counts)), counts)[spans.row]
@@ -410,17 +427,18 @@ def _find_places(
     return spans, active
 
 
-def _segments(toolpath: Toolpath, up: Array) -> _Segments:
+def _segments(toolpath: Toolpath, stack: Stack) -> _Segments:
     beads = list(toolpath)
     points = [bead.points for _, _, bead in beads]
     counts = [len(bead) - 1 for _, _, bead in beads]
+    numbers = np.arange(len(toolpath.layers)) if stack.numbers is None else stack.numbers
     return _Segments(
         np.concatenate([rows[:-1] for rows in points]),
         np.concatenate([rows[1:] for rows in points]),
-        np.repeat([layer for layer, _, _ in beads], counts),
+        np.repeat(numbers[[layer for layer, _, _ in beads]], counts),
         np.concatenate([bead.build[1:] for _, _, bead in beads]),
-        up,
-        min(float((rows @ up).min()) for rows in points),
+        stack.up,
+        lowest_point(toolpath, stack.up) if stack.ground is None else stack.ground,
     )
 
 

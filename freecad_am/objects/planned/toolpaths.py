@@ -25,7 +25,7 @@ from ...core.process.cooling_waits import enforce_layer_time, remove_waits
 from ...core.process.deposit.pieces import deposited_twice
 from ...core.process.wire import set_wire_feed
 from ...core.strategies import support
-from ...core.strategies.by_place import Zone, apply_settings, prevailing_settings
+from ...core.strategies.by_place import Stack, Zone, apply_settings, prevailing_settings
 from ...core.strategies.clearance.nozzle_check import CLEARANCE
 from ...core.toolpath import MotionRules, Toolpath
 from ...core.toolpath import Toolpath as CoreToolpath
@@ -113,11 +113,17 @@ def above_platform(toolpath: CoreToolpath, inputs: Given) -> list[Issue]:
 
 
 def layers_of(inputs: Given) -> CoreToolpath:
-    """Return layers and beads of a feature.
+    """Return layers and beads of a feature, with its settings by place.
 
     The nozzle is kept clear only of the feature itself, and only if the layers determine the tool
     directions. Raises the InputErrors of the family.
     """
+    layers = layers_before_places(inputs)
+    return complete_layers(layers, inputs, Stack(stacking_direction(layers, inputs)))
+
+
+def layers_before_places(inputs: Given) -> CoreToolpath:
+    """Return layers and beads of a feature at the speeds of the job and its classes, as `layers_of`."""
     process = inputs.process
     if process.bead_model == "none" and process.wire.feed_mode != "constant" and not process.ramped:
         raise InputError(
@@ -130,22 +136,29 @@ def layers_of(inputs: Given) -> CoreToolpath:
     classes.refuse_speeds(process)
     seams.check_parameters(process.seam)
     family = family_of(inputs.strategy)
-    layers, model = planner_of(family).plan_layers(inputs), inputs.model
+    layers = planner_of(family).plan_layers(inputs)
     if not family.is_filled:
         layers = seams.place_seams(layers, process)
     seams.check_distance(layers, process.seam)
-    layers = dataclasses.replace(
+    return dataclasses.replace(
         layers, issues=(*layers.issues, *seams.unused_issues(layers, process.seam))
     )
-    up = stacking_direction(layers, inputs)
+
+
+def complete_layers(layers: CoreToolpath, inputs: Given, stack: Stack) -> CoreToolpath:
+    """Return the layers of a feature with settings by place, bead ends and waits.
+
+    stack: how the layers are numbered, and heights measured.
+    """
+    process, model, family = inputs.process, inputs.model, family_of(inputs.strategy)
     if any(key.startswith("seam_") for setting in process.settings for key in setting.own_values()):
-        prevailing = prevailing_settings(layers, process, inputs.zones, up)
+        prevailing = prevailing_settings(layers, process, inputs.zones, stack)
         layers = seams.place_seams_by_place(
             layers, process, prevailing, _locate_angle(layers, inputs)
         )
     if model is not None and not family.is_filled:
         layers = model_notes.hold_widths(layers, process, model)
-    layers = apply_settings(layers, process, inputs.zones, up)
+    layers = apply_settings(layers, process, inputs.zones, stack)
     toolpath = seams.set_scarfs(classes.set_bead_ends(layers, process), process)
     if not family.is_filled or _waits_by_speed(inputs):
         toolpath = remove_waits(toolpath)

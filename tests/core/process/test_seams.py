@@ -22,7 +22,7 @@ from freecad_am.core.parameters.process import (
 )
 from freecad_am.core.parameters.settings import Setting
 from freecad_am.core.process import seams
-from freecad_am.core.strategies.by_place import prevailing_settings
+from freecad_am.core.strategies.by_place import Stack, prevailing_settings
 from freecad_am.core.strategies.solids.plan import plan
 from freecad_am.core.toolpath import LEAST_SECTION, Bead, Layer, Toolpath
 
@@ -260,7 +260,7 @@ def test_a_setting_of_all_layers_has_the_seams_of_the_job(rule):
     values = {f"seam_{key}": value for key, value in rule.items()}
     for first in (0, 3):
         process = ProcessParameters(settings=(Setting(first_layer=first, **values),))
-        active = prevailing_settings(usual, process, (), UP)
+        active = prevailing_settings(usual, process, (), Stack(UP))
         placed = seams.place_seams_by_place(
             usual, process, active, seams.locate_farthest(np.eye(4))
         )
@@ -290,13 +290,13 @@ def test_a_bead_follows_the_setting_of_at_least_half_of_its_length():
         box = (edge, -50.0, -1.0, 50.0, 50.0, 9.0)
         setting = Setting(box=box, seam_position="point", seam_point=(0.0, 50.0, 0.0))
         process = ProcessParameters(settings=(setting,))
-        active = prevailing_settings(ring, process, (), UP)
+        active = prevailing_settings(ring, process, (), Stack(UP))
         placed = seams.place_seams_by_place(ring, process, active, None)
         for _, _, bead in placed:
             wanted = (0.0, 20.0) if moved else (20.0, 0.0)
             assert bead.points[0][:2] == pytest.approx(wanted, abs=0.05)
         codes = [issue.code for issue in placed.issues]
-        assert codes == ([] if moved else ["NO_EFFECT"])
+        assert codes == ([] if moved else ["SETTING_UNUSED"])
     for setting, code, where in (
         (Setting(first_layer=0, seam_angle=1.0), "NOT_FOR_FAMILY", "seam.position"),
         (Setting(first_layer=0, seam_position="point"), "BAD_VALUE", "seam.point"),

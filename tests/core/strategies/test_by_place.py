@@ -10,7 +10,7 @@ from freecad_am.core.geometry.obstacles import Body, box
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.settings import SETTINGS, Setting
-from freecad_am.core.strategies.by_place import UNUSED_CODE, Zone, apply_settings
+from freecad_am.core.strategies.by_place import UNUSED_CODE, Stack, Zone, apply_settings
 from freecad_am.core.toolpath import Bead, BeadRole, Layer, Toolpath
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -159,7 +159,7 @@ def check_round(rng):
     toolpath = random_toolpath(rng)
     settings, zones = zip(*(random_setting(rng) for _ in range(int(rng.integers(1, 5)))))
     process = ProcessParameters(settings=settings)
-    placed = apply_settings(toolpath, process, zones, UP)
+    placed = apply_settings(toolpath, process, zones, Stack(UP))
     ground = min(bead.points[:, 2].min() for _, _, bead in toolpath)
     met = 0
     for (layer, number, before), (_, _, bead) in zip(toolpath, placed, strict=True):
@@ -237,5 +237,5 @@ def test_an_open_mesh_has_no_inside():
     process = ProcessParameters(settings=(Setting(inside="zone", weave=1),))
     zone = Zone(Body("zone", solid.vertices, solid.triangles[1:]))
     with pytest.raises(InputError) as error:
-        apply_settings(random_toolpath(np.random.default_rng(1)), process, (zone,), UP)
+        apply_settings(random_toolpath(np.random.default_rng(1)), process, (zone,), Stack(UP))
     assert error.value.code == "OPEN_MESH"

@@ -12,7 +12,7 @@ from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.process.seams import locate_azimuth, place_seams_by_place
-from freecad_am.core.strategies.by_place import prevailing_settings
+from freecad_am.core.strategies.by_place import Stack, prevailing_settings
 from freecad_am.core.strategies.revolution import plan as revolution
 
 NOZZLE = NozzleParameters()
@@ -170,7 +170,7 @@ def test_seams_by_angle_vary_by_place(direction):
         settings="layers from 2: seam_angle 200, seam_step -20",
     )
     usual = plan(CYLINDER, process=process, frame=MOVED, layer_height=10.0)
-    prevailing = prevailing_settings(usual, process, (), MOVED[:3, 2])
+    prevailing = prevailing_settings(usual, process, (), Stack(MOVED[:3, 2]))
     assert prevailing.tolist() == [int(layer >= 2) for layer, _, _ in usual]
     placed = place_seams_by_place(usual, process, prevailing, locate_azimuth)
     for (i, _, before), (_, _, bead) in zip(usual, placed, strict=True):
