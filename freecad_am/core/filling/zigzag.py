@@ -14,6 +14,7 @@ import numpy as np
 
 from ..geometry.curves.plane_curve import length, nearest, rotate_points
 from ..geometry.regions.region import Region, simplified
+from ..progress import pulse, pulse_each
 from ..types import Array, Index
 from .adaptive_widths import (
     BeadLaw,
@@ -76,7 +77,7 @@ def in_rows(
     levels = [[line for line in lines if length(line, False) > min_edge] for lines in rows]
     open_ = [list(range(len(level))) for level in levels]
     curves = []
-    for row in range(len(levels)):
+    for row in pulse_each(range(len(levels))):
         while open_[row]:
             points = _chain(levels, open_, row, borders, longest_link, min_edge, inside)
             if length(points, False) >= beads.shortest:
@@ -483,7 +484,7 @@ def _chain_runs(
     for run in runs:
         rows.setdefault(run.row, []).append(run)
     beads = []
-    for row in sorted(rows):
+    for row in pulse_each(sorted(rows)):
         while rows[row]:
             beads.append(_zigzag(rows, row, grid, borders, law, longest_link))
     return beads
@@ -504,6 +505,7 @@ def _zigzag(
     points: list[Array] = []
     shares: list[Array] = []
     while True:
+        pulse()
         found = None
         if longest_link is not None:
             found = _next(

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 from scipy.spatial import cKDTree
 
 from ...issues import InputError, Text
+from ...progress import pulse
 from ...types import Array, Index, Mask
 from ..columns import sides
 from ..formatting import place
@@ -357,6 +358,7 @@ def _divide_triangles(
     """Divide triangles (m, 3, 3) for `divide_triangles`, by bisecting the longest side."""
     triangle, blocks = np.arange(len(corner)), []
     while len(corner):
+        pulse()
         if is_kept is not None:
             keep = is_kept(corner)
             corner, triangle = corner[keep], triangle[keep]

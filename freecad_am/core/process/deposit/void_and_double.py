@@ -17,6 +17,7 @@ from ...geometry.regions.region import regions
 from ...geometry.regions.several import grow_regions
 from ...geometry.section import Coverage, Section
 from ...issues import WARNING, Issue, Text
+from ...progress import pulse, pulse_each
 from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array, Integers, Mask
 
@@ -171,7 +172,9 @@ def draw(
     inside = raster.inside(section.edges)
     if not inside.any():
         return None
+    pulse()
     shapes, depth = raster.counts(narrow)
+    pulse()
     covered = shapes > 0
     single = raster.pixel**2 * np.count_nonzero(covered)
     if share < 1.0:
@@ -252,7 +255,7 @@ def measure(toolpath: Toolpath, max_void: float) -> Toolpath:
         worst_layers(coverages)
     )
     pictures: dict[bytes, Picture] = {}  # recent rasters, because equal layers often alternate
-    for number in sorted(placed):
+    for number in pulse_each(sorted(placed)):
         section = toolpath.layers[number].section
         assert section is not None
         key = _key(toolpath.layers[number], section, toolpath)
@@ -274,7 +277,7 @@ def _measure(toolpath: Toolpath) -> dict[int, Coverage]:
     """Return the coverage of each layer with a section, by index; equal layers are measured once."""
     coverages: dict[int, Coverage] = {}
     measured: dict[bytes, Coverage | None] = {}
-    for number, layer in enumerate(toolpath.layers):
+    for number, layer in enumerate(pulse_each(toolpath.layers)):
         if layer.section is None:
             continue
         key = _key(layer, layer.section, toolpath)

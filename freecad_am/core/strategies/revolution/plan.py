@@ -21,12 +21,12 @@ from ...parameters.cell import NozzleParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import RevolutionParameters
 from ...process import bead_order, classes
+from ...progress import Progress, silent
 from ...slicing import revolution
 from ...toolpath import Bead, BeadRole, Layer, MotionRules, Toolpath
 from ...types import Array, Index
 from .. import estimated_size
 from ..clearance.nozzle_check import SEAM
-from ..progress import Progress, silent
 from . import clearance
 from .clearance import Deposit, Tips
 from .tilt import Tilting

@@ -33,6 +33,7 @@ from ...parameters.process import ProcessParameters
 from ...process.bead_model import BeadModel
 from ...process.deposit.void_and_double import draw
 from ...process.wire import model_wire_feed
+from ...progress import pulse_each
 from ...types import Array
 
 Same = TypeVar("Same", bound=FilledParameters)
@@ -198,7 +199,7 @@ class Pictures:
         covers: list[Cover] = []
         bare: list[Bare] = []
         unfilled: list[Bare] = []
-        for region in layer.regions:
+        for region in pulse_each(layer.regions):
             try:
                 picture = self._picture(layer, region, filling)
             except InfeasibleError as error:

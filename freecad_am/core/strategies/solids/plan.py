@@ -37,10 +37,10 @@ from ...process.bead_model import BeadModel
 from ...process.bead_order import Course, IslandOrder, RankedBead, order_beads
 from ...process.cooling_waits import add_waits
 from ...process.seams import SeamPlacer
+from ...progress import Progress, pulse_each, silent
 from ...toolpath import Bead, Checks, Layer, MotionRules, Toolpath
 from ...types import Array, Mask
 from .. import estimated_size
-from ..progress import Progress, silent
 from .beads import BeadMaker, MadeBead, slab_volumes, start_beads, twice_volume, volumes
 from .filling import Bare, Pictures, bead_width, over_fed, spaced
 from .notes import notes
@@ -320,7 +320,9 @@ def plan(
                 )
             )
             made_in_layer = start_beads(
-                [maker.bead_of(curve, layer) for curve in picture.curves], placer, layer.number
+                [maker.bead_of(curve, layer) for curve in pulse_each(picture.curves)],
+                placer,
+                layer.number,
             )
             made_beads += made_in_layer
             beads = [made_bead.bead for made_bead in made_in_layer]
@@ -559,7 +561,7 @@ def uncut(
         return []
     missed = []
     for number, group in enumerate(solids.groups):
-        for solid in (solid for body in group.bodies for solid in _pieces(body)):
+        for solid in pulse_each(solid for body in group.bodies for solid in _pieces(body)):
             levels = _levels(group, solid.vertices[np.unique(solid.triangles)])
             if _is_cut(float(levels.min()), float(levels.max()), strategy):
                 continue
