@@ -4648,8 +4648,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Opens a part or mesh from a file in a separate process, even if the file is damaged</source>
-        <translation>Ouvre une pièce ou un maillage d&apos;un fichier dans un processus à part, même si le fichier est endommagé</translation>
+        <source>Opens a part or mesh; a separate process reads the file, so a damaged file cannot crash FreeCAD</source>
+        <translation>Ouvre une pièce ou un maillage ; un processus à part lit le fichier, donc un fichier endommagé ne peut pas faire planter FreeCAD</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/whats_this.py"/>
@@ -10683,33 +10683,33 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} are not written with a positioner; plan without a program, and use the axis values in waypoints.csv</source>
-        <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
+        <source>programs of {0} cannot use a positioner; plan without a program, and use the axis values in waypoints.csv</source>
+        <translation>les programmes de {0} ne peuvent pas utiliser un positionneur ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} are not written with a positioner; use one of {1}</source>
-        <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; utiliser {1}</translation>
+        <source>programs of {0} cannot use a positioner; use one of {1}</source>
+        <translation>les programmes de {0} ne peuvent pas utiliser un positionneur ; utilisez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} are not written with a track and a positioner together; plan without a program, and use the axis values in waypoints.csv</source>
-        <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
+        <source>programs of {0} cannot use a track and a positioner together; plan without a program, and use the axis values in waypoints.csv</source>
+        <translation>les programmes de {0} ne peuvent pas utiliser un rail et un positionneur ensemble ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} are not written with a track and a positioner together; use one of {1}</source>
-        <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; utiliser {1}</translation>
+        <source>programs of {0} cannot use a track and a positioner together; use one of {1}</source>
+        <translation>les programmes de {0} ne peuvent pas utiliser un rail et un positionneur ensemble ; utilisez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} are not written with a track; plan without a program, and use the axis values in waypoints.csv</source>
-        <translation>les programmes de {0} ne sont pas écrits avec un rail ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
+        <source>programs of {0} cannot use a track; plan without a program, and use the axis values in waypoints.csv</source>
+        <translation>les programmes de {0} ne peuvent pas utiliser un rail ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} are not written with a track; use one of {1}</source>
-        <translation>les programmes de {0} ne sont pas écrits avec un rail ; utiliser {1}</translation>
+        <source>programs of {0} cannot use a track; use one of {1}</source>
+        <translation>les programmes de {0} ne peuvent pas utiliser un rail ; utilisez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -18141,8 +18141,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Opens a part or mesh from a file in a separate process, even if the file is damaged</source>
-        <translation>Ouvre une pièce ou un maillage d&apos;un fichier dans un processus à part, même si le fichier est endommagé</translation>
+        <source>Opens a part or mesh; a separate process reads the file, so a damaged file cannot crash FreeCAD</source>
+        <translation>Ouvre une pièce ou un maillage ; un processus à part lit le fichier, donc un fichier endommagé ne peut pas faire planter FreeCAD</translation>
     </message>
 </context>
 <context>

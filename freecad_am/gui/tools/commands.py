@@ -194,7 +194,8 @@ TOOLS = {
         "open_part",
         marked("Open Part…"),
         marked(
-            "Opens a part or mesh from a file in a separate process, even if the file is damaged"
+            "Opens a part or mesh; a separate process reads the file, so a damaged file cannot "
+            "crash FreeCAD"
         ),
         open_part,
         whats_this.nothing,

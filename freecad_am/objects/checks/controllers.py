@@ -189,7 +189,7 @@ def check_external(cell: Cell, post: str) -> None:
     raise InputError(
         "UNSUPPORTED_AXES",
         "program.post",
-        "programs of {} are not written with {}; {}",
+        "programs of {} cannot use {}; {}",
         post,
         Word(external),
         Word(reason),
