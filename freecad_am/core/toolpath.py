@@ -583,8 +583,9 @@ class Layer:
     wait: pause of the machine before the layer, s, for the deposit below to cool. first: whether
     the feature has no layer below, as at the start of another solid. feature: index of the layer's
     feature in a toolpath with several features. section: section of the part in the layer's plane,
-    None if unknown. coverage: how well the beads fill the section, None until measured. A layer too
-    small for a bead is empty and keeps its index.
+    None if unknown. coverage: how well the beads fill the section, None until measured. height: mm,
+    if layers adapt their heights to the part, else None. A layer too small for a bead is empty and
+    keeps its index.
     """
 
     beads: tuple[Bead, ...]
@@ -593,6 +594,15 @@ class Layer:
     feature: int = 0
     section: Section | None = None
     coverage: Coverage | None = None
+    height: float | None = None
+
+    @property
+    def deposit_time(self) -> float:
+        """Time to deposit the beads at their speeds, s."""
+        return math.fsum(
+            float((lengths(np.diff(bead.points, axis=0)) / bead.speed[1:]).sum())
+            for bead in self.beads
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -604,7 +614,8 @@ class Checks:
     part, volume missed by the beads and volume of stray beads, mm3. uneven: (k, 3) index, minimum
     and maximum height, mm, of layers of uneven height. twice: over-deposition, mm3, of beads as wide as
     their spacing on other beads of the layer. fitted: fit to a scan. predicted: comparison of the
-    predicted deposit with the part.
+    predicted deposit with the part. adapted: of layers that adapt their heights: largest cusp, mm,
+    constant layer height with the same cusp, mm, its number of layers, and its deposit time, s.
     """
 
     unsupported: float | None = None
@@ -614,6 +625,7 @@ class Checks:
     twice: float | None = None
     fitted: Fitted | None = None
     predicted: PredictedShape | None = None
+    adapted: tuple[float, float, int, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -721,7 +733,19 @@ class Toolpath:
         """
         heights = [feature.values.layer_height for feature in self.features]
         heights = heights or [self.layer_height]
-        return np.array([heights[layer.feature if self.features else 0] for layer in self.layers])
+        return np.array(
+            [
+                heights[layer.feature if self.features else 0]
+                if layer.height is None
+                else layer.height
+                for layer in self.layers
+            ]
+        )
+
+    @property
+    def adapts_heights(self) -> bool:
+        """Whether layers adapt their heights to the part."""
+        return any(layer.height is not None for layer in self.layers)
 
     @property
     def traits(self) -> Family:

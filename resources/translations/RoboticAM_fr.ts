@@ -340,6 +340,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Height of the lowest layer; the layer height is then that of the highest layer, and each layer of planes is as high as the cusp permits. (mm)</source>
+        <translation>Hauteur de la couche la plus basse ; la hauteur de couche est alors celle de la plus haute, et chaque couche plane est aussi haute que la crête le permet. (mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Height within a layer at which the part is cut for its outline.</source>
         <translation>À quelle hauteur une couche prend son contour de la pièce.</translation>
     </message>
@@ -397,6 +402,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Largest error of the local distance of constant-distance layers.</source>
         <translation>Plus grande erreur de la distance locale des couches constant-distance.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest height of the steps between layers, measured normal to the surface, where layer heights adapt to the slope of the part. (mm)</source>
+        <translation>Plus grande hauteur des marches entre les couches, mesurée normalement à la surface, là où les hauteurs de couche s&apos;adaptent à la pente de la pièce. (mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -2473,6 +2483,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Cusp</source>
+        <translation>Crête</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Cut at</source>
         <translation>Couper à</translation>
     </message>
@@ -3383,6 +3398,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Height of the lowest layer; the layer height is then that of the highest layer, and each layer of planes is as high as the cusp permits.</source>
+        <translation>Hauteur de la couche la plus basse ; la hauteur de couche est alors celle de la plus haute, et chaque couche plane est aussi haute que la crête le permet.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Height within a layer at which the part is cut for its outline.</source>
         <translation>À quelle hauteur une couche prend son contour de la pièce.</translation>
     </message>
@@ -3707,6 +3727,11 @@
         <translation>Plus grande erreur de la distance locale des couches constant-distance.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest height of the steps between layers, measured normal to the surface, where layer heights adapt to the slope of the part.</source>
+        <translation>Plus grande hauteur des marches entre les couches, mesurée normalement à la surface, là où les hauteurs de couche s&apos;adaptent à la pente de la pièce.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Largest hole in a mesh that is closed automatically, with a note; larger holes are rejected.</source>
         <translation>Les trous des maillages jusqu&apos;à cette largeur sont fermés, ce qui est signalé ; les plus grands sont refusés.</translation>
@@ -3770,6 +3795,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Layer height</source>
         <translation>Hauteur de couche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/pictures.py"/>
+        <source>Layer height by layer</source>
+        <translation>Hauteur de couche par couche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -3840,6 +3870,11 @@
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Least</source>
         <translation>Minimum</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Least height</source>
+        <translation>Hauteur minimale</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -7302,6 +7337,11 @@
         <translation>une bande de {0} % est trop étroite : {1} de {2} couches tournent de plus de {3} deg/mm, {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
+        <source>a bead model gives all beads of one width the same height, but layers are {0} to {1} mm high; use bead_model: none, or one strategy.layer_height</source>
+        <translation>un modèle de cordon donne la même hauteur à tous les cordons d&apos;une même largeur, mais les couches ont de {0} à {1} mm de haut ; prenez bead_model: none, ou une seule strategy.layer_height</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/curves.py"/>
         <source>a bead runs parallel to its tool direction, at {0}, so the nozzle would hit the bead; set another strategy.direction, choose faces, or give directions in the table</source>
         <translation>un cordon est parallèle à la direction de son outil, en {0}, donc la buse heurterait le cordon ; fixez un autre strategy.direction, choisissez des faces, ou donnez des directions dans le tableau</translation>
@@ -9452,6 +9492,11 @@
         <translation>hauteur de couche</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>layer heights adapt in plane layers only, not with layers: {0}; use layers: planes, or remove strategy.cusp and give one strategy.layer_height</source>
+        <translation>les hauteurs de couche ne s&apos;adaptent que dans des couches planes, pas avec layers: {0} ; prenez layers: planes, ou retirez strategy.cusp et donnez une seule strategy.layer_height</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/issues.py"/>
         <source>layer {0}</source>
         <translation>couche {0}</translation>
@@ -9515,6 +9560,11 @@
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>layers do not begin where planned</source>
         <translation>les couches ne commencent pas là où c&apos;est prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
+        <source>layers of adapted height cannot be fitted to a scan yet; give one strategy.layer_height, or remove the scan</source>
+        <translation>les couches de hauteur adaptée ne peuvent pas encore être ajustées à un relevé ; donnez une seule strategy.layer_height, ou retirez le relevé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
@@ -10355,6 +10405,11 @@
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>one output of the schedule switches the deposit</source>
         <translation>une sortie du programme de soudage commute le dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
+        <source>one strategy.layer_height</source>
+        <translation>une seule strategy.layer_height</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
@@ -12640,6 +12695,16 @@
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
         <source>the layer is predicted to end {0} mm below the start of the next layer: up to here layers are {1} mm high on average instead of {2} mm; set strategy.layer_height to {3} mm, or change the wire feed</source>
         <translation>d&apos;après la prédiction, la couche finit {0} mm au-dessous du début de la couche suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut au lieu de {2} mm ; fixez strategy.layer_height à {3} mm, ou changez l&apos;avance du fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>the least height, {0} mm, is above the most, {1} mm; give the smaller height as least</source>
+        <translation>la hauteur minimale, {0} mm, dépasse la maximale, {1} mm ; donnez la plus petite comme minimum</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/plane_field.py"/>
+        <source>the least height, {0} mm, is too high for {1}, {2} mm high along strategy.direction: no layer is cut in its {3}; use at most {4} mm</source>
+        <translation>la hauteur minimale, {0} mm, est trop grande pour {1}, haut de {2} mm selon strategy.direction : aucune couche n&apos;est coupée en son {3} ; prenez au plus {4} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
@@ -16422,6 +16487,11 @@
         <translation>{0} couche(s) de {1} ne reçoivent pas de cordon, car toutes leurs régions sont trop étroites : {2} ; la plus grande, de {3} mm^2 et {4} mm de large, est en {5} ; le total est de {6} mm^2 ; utilisez des cordons plus étroits, baissez strategy.narrowest, ou épaississez la pièce là</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
+        <source>{0} layers are {1} to {2} mm high, with steps of at most {3} mm normal to the surface; {4} layers of {5} mm would have the same steps, and would take {6} min to deposit instead of {7} min</source>
+        <translation>{0} couches ont de {1} à {2} mm de haut, avec des marches d&apos;au plus {3} mm normalement à la surface ; {4} couches de {5} mm auraient les mêmes marches, et se déposeraient en {6} min au lieu de {7} min</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>{0} leave more than one opening around the axis; choose a single face</source>
         <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez une seule face</translation>
@@ -16507,6 +16577,11 @@
         <translation>{0} mm font environ {1} points, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/plane_field.py"/>
+        <source>{0} mm is exceeded in {1} of {2} layers: layer {3}, {4} mm high, has a step of {5} mm normal to the surface at {6}; set strategy.cusp to {7} mm, or the least strategy.layer_height to {8} mm</source>
+        <translation>{0} mm est dépassé dans {1} couches sur {2} : la couche {3}, haute de {4} mm, a une marche de {5} mm normalement à la surface en {6} ; mettez strategy.cusp à {7} mm, ou le minimum de strategy.layer_height à {8} mm</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
         <source>{0} mm is not a unit; give the length of one unit of the file, such as 25.4 mm</source>
         <translation>{0} mm n&apos;est pas une unité ; donnez la longueur d&apos;une unité du fichier, comme 25.4 mm</translation>
@@ -16527,9 +16602,19 @@
         <translation>{0} mm, c&apos;est trop pour {1}, long de {2} mm le long du guide : aucune couche n&apos;est coupée en son {3} ; donnez au plus {4} mm</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>{0} mm needs layers of several heights; give least and most of strategy.layer_height</source>
+        <translation>{0} mm demande des couches de plusieurs hauteurs ; donnez le minimum et le maximum de strategy.layer_height</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/deposit/support.py"/>
         <source>{0} mm of bead are unsupported, and the longest run, from here, is {1} mm: the surface below is more than {2} mm away, or beads overhang by more than half their width; deposit the support first, change the growth direction, or remove these beads</source>
         <translation>{0} mm de cordon ne sont pas portés, et le plus long morceau, à partir d&apos;ici, est de {1} mm : la surface dessous est à plus de {2} mm, ou les cordons dépassent de plus de la moitié de leur largeur ; déposez d&apos;abord le support, changez la direction de croissance, ou retirez ces cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>{0} mm of margin needs layers of one height; use 0 mm, or one strategy.layer_height</source>
+        <translation>une surépaisseur de {0} mm demande des couches d&apos;une seule hauteur ; prenez 0 mm, ou une seule strategy.layer_height</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/support.py"/>
@@ -17030,6 +17115,11 @@
         <location filename="../../freecad_am/core/parameters/settings.py"/>
         <source>{0} to {1} is not a range; give the lower end first</source>
         <translation>{0} à {1} n&apos;est pas une plage ; donnez d&apos;abord la borne inférieure</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>{0} to {1} mm needs a largest step between layers; give strategy.cusp, for example 0.2 mm</source>
+        <translation>de {0} à {1} mm, il faut une marche maximale entre les couches ; donnez strategy.cusp, par exemple 0.2 mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>

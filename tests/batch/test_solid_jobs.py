@@ -186,3 +186,87 @@ def test_a_small_part_by_a_robot_that_takes_no_short_moves(workshop):
     )
     assert refusal and 40 < int(refusal[1]) < int(refusal[2])
     assert "with its approach" not in command.err  # reported before the joints are planned
+
+
+ADAPTED = """\
+part: {{file: {}}}
+strategy:
+  kind: solid
+  layer_height: {{least: 2 mm, most: 5 mm}}
+  cusp: 2 mm
+  chord_error: 0.025 mm
+  bead_spacing: 8 mm
+"""
+MESH_ERROR = 0.01  # mm; the triangles of a STEP part are as near to it, within 0.4 chord errors
+
+
+def test_layers_that_adapt_to_a_dome_are_those_of_its_mesh(workshop):
+    """The same layers from STEP and mesh, their heights in table and report, and no other column."""
+    import Mesh
+    import MeshPart
+
+    dome = Part.makeSphere(30, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 0, 90, 360)
+    dome.exportStep(str(workshop.folder / "dome.step"))
+    mesh = MeshPart.meshFromShape(dome, LinearDeflection=MESH_ERROR, AngularDeflection=0.1)
+    Mesh.Mesh(mesh).write(str(workshop.folder / "dome.stl"))
+    heights = []
+    for name in ("dome.step", "dome.stl"):
+        (workshop.folder / "job.yaml").write_text(ADAPTED.format(name), encoding="utf-8")
+        command = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+        assert command.status == 0, command.err
+        assert "ADAPTED_HEIGHTS" in command.err
+        report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
+        figures = report["adapted_heights"]
+        with open(
+            workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline=""
+        ) as stream:
+            table = list(csv.DictReader(stream))
+        layer = {int(row["layer"]): float(row["height_mm"]) for row in table}
+        assert list(table[0])[-2:] == ["height_mm", "class"]
+        assert sum(layer.values()) == pytest.approx(30.0, abs=1e-3)
+        for row in table:
+            if row["kind"] == "deposit":
+                plane = sum(layer[k] for k in range(int(row["layer"])))
+                assert float(row["z_mm"]) == pytest.approx(plane, abs=1e-4)
+        assert [entry["least_mm"] for entry in report["layer_heights"]] == pytest.approx(
+            list(layer.values()), abs=1e-5
+        )
+        assert figures["most_mm"] == pytest.approx(max(layer.values()), abs=1e-5)
+        assert figures["cusp_mm"] <= 2.0 and figures["constant"]["layers"] == 15
+        assert figures["deposit_s"] < 0.75 * figures["constant"]["deposit_s"]
+        heights.append(list(layer.values()))
+    assert len(heights[0]) <= 0.75 * 15
+    assert heights[0] == pytest.approx(heights[1], rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("more", "code", "where"),
+    [
+        ("  layer_height: {least: 1 mm}\n", "BAD_VALUE", "strategy.layer_height.most"),
+        (
+            "  layer_height: {least: 1 mm, highest: 2 mm}\n",
+            "UNKNOWN_KEY",
+            "strategy.layer_height.h",
+        ),
+        ("  layer_height: {least: 1 mm, most: 2 kg}\n  cusp: 1 mm\n", "BAD_UNIT", "layer_height"),
+        ("  layer_height: {least: 3 mm, most: 2 mm}\n  cusp: 1 mm\n", "BAD_VALUE", "layer_height"),
+        ("  layer_height: {least: 1 mm, most: 2 mm}\n", "BAD_VALUE", "strategy.layer_height"),
+        ("  cusp: 1 mm\n", "BAD_VALUE", "strategy.cusp"),
+        (
+            "  layers: developable\n  layer_height: {least: 1 mm, most: 2 mm}\n",
+            "NOT_FOR_FAMILY",
+            "strategy.layer_height",
+        ),
+    ],
+)
+def test_layer_heights_that_are_refused(read, more, code, where):
+    with pytest.raises(InputError) as caught:
+        read(START + more)
+    assert caught.value.code == code and where in caught.value.where
+
+
+def test_heights_are_a_range_or_two_keys(read):
+    """A table of jobs gives the least height in a column of its own."""
+    as_range = read(START + "  layer_height: {least: 1 mm, most: 3 mm}\n  cusp: 0.2 mm\n").strategy
+    as_keys = read(START + "  layer_height: 3 mm\n  least_height: 1 mm\n  cusp: 0.2 mm\n").strategy
+    assert as_range == as_keys == SolidParameters(layer_height=3.0, least_height=1.0, cusp=0.2)

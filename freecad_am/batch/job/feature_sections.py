@@ -371,6 +371,13 @@ def strategy_of(section: Any) -> LayerParameters:
     if family.kind != kind:  # the name of its layers, which has said all
         section = {key: value for key, value in section.items() if key != "layers"}
     names = {field.name for field in dataclasses.fields(family.parameters)}
+    if isinstance(section.get("layer_height"), dict) and "least_height" not in names:
+        raise InputError(
+            "NOT_FOR_FAMILY",
+            "strategy.layer_height",
+            "layer heights adapt in solids with layers: planes only, not in {}; give one length",
+            family.kind,
+        )
     for name, write in _WRITTEN.items():
         if name in names:
             section = write(section)
@@ -393,8 +400,27 @@ def _without_auto_base(section: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in section.items() if (key, value) != ("base", "auto")}
 
 
+def _split_heights(section: dict[str, Any]) -> dict[str, Any]:
+    """Return the section with `layer_height: {least, most}` as two heights."""
+    heights = section.get("layer_height")
+    if not isinstance(heights, dict) or not heights:
+        return section
+    where = "strategy.layer_height"
+    fields.known_keys(heights, ("least", "most"), where)
+    for key in ("least", "most"):
+        if heights.get(key) in (None, {}):
+            raise InputError(
+                "BAD_VALUE", f"{where}.{key}", "the value is missing; give a length such as 2 mm"
+            )
+    return {**section, "layer_height": heights["most"], "least_height": heights["least"]}
+
+
 # keys that a job writes in another way than parameters
-_WRITTEN = {"base": _without_auto_base, "roles": _roles_as_text}
+_WRITTEN = {
+    "base": _without_auto_base,
+    "roles": _roles_as_text,
+    "least_height": _split_heights,
+}
 
 
 # ---- Material files: data of a wire and its beads, which complete the section `process` of a job

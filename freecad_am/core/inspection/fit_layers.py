@@ -208,7 +208,7 @@ class _Course:
 
 
 def refuse_family(toolpath: Toolpath, where: str) -> None:
-    """Raise InputError NOT_YET for families whose layers cannot be fitted to scans."""
+    """Raise InputError NOT_YET for layers that cannot be fitted to scans."""
     if not toolpath.traits.fits_scans(PLANES):
         raise InputError(
             "NOT_YET",
@@ -216,6 +216,13 @@ def refuse_family(toolpath: Toolpath, where: str) -> None:
             "layers of the family {} cannot be fitted to a scan yet, only solids in planar "
             "layers and walls on a substrate; remove the scan",
             toolpath.family,
+        )
+    if toolpath.adapts_heights:
+        raise InputError(
+            "NOT_YET",
+            where,
+            "layers of adapted height cannot be fitted to a scan yet; give one "
+            "strategy.layer_height, or remove the scan",
         )
 
 

@@ -214,7 +214,6 @@ def report_overhangs(slices: Iterable[Slice], strategy: SolidParameters) -> Iter
     The overhang angle is measured from the stacking direction. The issue reports the total area and
     the position of the largest region.
     """
-    reach = strategy.layer_height * math.tan(strategy.max_overhang) + strategy.chord_error
     min_area = (MIN_SIDE_SHARE * strategy.bead_spacing) ** 2
     previous: Slice | None = None
     for layer in slices:
@@ -223,7 +222,8 @@ def report_overhangs(slices: Iterable[Slice], strategy: SolidParameters) -> Iter
             over = _overhanging_regions(
                 layer,
                 previous if previous.number == layer.number - 1 else None,
-                reach,
+                _rise(previous, layer, strategy) * math.tan(strategy.max_overhang)
+                + strategy.chord_error,
                 strategy.chord_error,
                 min_area,
             )
@@ -247,6 +247,14 @@ def report_overhangs(slices: Iterable[Slice], strategy: SolidParameters) -> Iter
                 )
         previous = layer
         yield layer._replace(issues=issues)
+
+
+def _rise(below: Slice, layer: Slice, strategy: SolidParameters) -> float:
+    """Return the distance between the cuts of two neighbouring layers, mm."""
+    if not strategy.adapts_heights or below.heights is None or layer.heights is None:
+        return strategy.layer_height
+    share = strategy.share_of_cut
+    return (1.0 - share) * below.heights[1] + share * layer.heights[1]
 
 
 def _overhanging_regions(

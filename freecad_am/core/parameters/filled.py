@@ -313,6 +313,16 @@ class FilledParameters(LayerParameters):
         return 0.0
 
     @property
+    def adapts_heights(self) -> bool:
+        """Return whether layer heights follow the slope of the part."""
+        return False
+
+    @property
+    def lowest_height(self) -> float:
+        """Return the height of the lowest possible layer, mm."""
+        return self.layer_height
+
+    @property
     def has_direction(self) -> bool:
         """Whether the fill depends on an angle."""
         return not self.rounds_alone or self.fill_density < 1.0
@@ -410,6 +420,24 @@ class SolidParameters(FilledParameters):
         high=1.0,
         advanced=True,
     )
+    least_height: float | None = f.parameter(
+        None,
+        f.LENGTH,
+        "Height of the lowest layer; the layer height is then that of the highest layer, and each "
+        "layer of planes is as high as the cusp permits.",
+        low=0.0,
+        open_low=True,
+        optional=True,
+    )
+    cusp: float | None = f.parameter(
+        None,
+        f.LENGTH,
+        "Largest height of the steps between layers, measured normal to the surface, where layer "
+        "heights adapt to the slope of the part.",
+        low=0.0,
+        open_low=True,
+        optional=True,
+    )
     fuse: str = f.parameter(
         "auto",
         f.CHOICE,
@@ -421,6 +449,64 @@ class SolidParameters(FilledParameters):
     def __post_init__(self) -> None:
         convert_texts(self)
         super().__post_init__()
+        if self.least_height is not None or self.cusp is not None:
+            self._check_heights()
+
+    def _check_heights(self) -> None:
+        """Refuse layer heights that cannot adapt, with the remedy."""
+        lowest, highest = self.least_height, self.layer_height
+        if lowest is None:
+            raise InputError(
+                "BAD_VALUE",
+                "strategy.cusp",
+                "{:g} mm needs layers of several heights; give least and most of "
+                "strategy.layer_height",
+                self.cusp,
+            )
+        if self.cusp is None:
+            raise InputError(
+                "BAD_VALUE",
+                "strategy.layer_height",
+                "{:g} to {:g} mm needs a largest step between layers; give strategy.cusp, for "
+                "example 0.2 mm",
+                lowest,
+                highest,
+            )
+        if lowest > highest:
+            raise InputError(
+                "BAD_VALUE",
+                "strategy.layer_height",
+                "the least height, {:g} mm, is above the most, {:g} mm; give the smaller height "
+                "as least",
+                lowest,
+                highest,
+            )
+        if self.layers != PLANES:
+            raise InputError(
+                "NOT_FOR_FAMILY",
+                "strategy.cusp",
+                "layer heights adapt in plane layers only, not with layers: {}; use layers: "
+                "planes, or remove strategy.cusp and give one strategy.layer_height",
+                self.layers,
+            )
+        if self.margin:
+            raise InputError(
+                "NOT_YET",
+                "strategy.margin",
+                "{:g} mm of margin needs layers of one height; use 0 mm, or one "
+                "strategy.layer_height",
+                self.margin,
+            )
+
+    @property
+    def adapts_heights(self) -> bool:
+        """Return whether layer heights follow the slope of the part."""
+        return self.cusp is not None
+
+    @property
+    def lowest_height(self) -> float:
+        """Return the height of the lowest possible layer, mm."""
+        return self.layer_height if self.least_height is None else self.least_height
 
     @property
     def has_plane_layers(self) -> bool:

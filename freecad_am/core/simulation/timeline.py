@@ -50,7 +50,7 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
     # the width of a segment is the mean of the widths at its ends
     mean_width = 0.5 * (width + np.concatenate([width[:1], width[:-1]]))
     height: Array | float = toolpath.layer_height
-    if toolpath.features or toolpath.checks.fitted is not None:
+    if toolpath.features or toolpath.adapts_heights or toolpath.checks.fitted is not None:
         height = (
             _mean_heights(toolpath)
             if toolpath.checks.fitted is not None

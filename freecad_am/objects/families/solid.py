@@ -60,7 +60,10 @@ class SolidPlanner(FilledPlanner):
         self, toolpath: Toolpath, inputs: Given, sources: Sequence[Taken], places: on_part.Places
     ) -> PartDistances | None:
         """Return distances at the slicing height, above the lower surface of a layer's beads."""
-        up = inputs.strategy.share_of_cut * inputs.strategy.layer_height * places.build
+        high = inputs.strategy.layer_height
+        if toolpath.adapts_heights:
+            high = toolpath.layer_heights[places.layer][:, None]
+        up = inputs.strategy.share_of_cut * high * places.build
         cut_places = places._replace(points=places.points + up)
         return super().part_distances(toolpath, inputs, sources, cut_places)
 

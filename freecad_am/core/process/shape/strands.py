@@ -242,7 +242,9 @@ def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
         pieces.length,
         pieces.width,
         _volumes(toolpath, process, bead, arc, pieces.length),
-        np.full(len(bead), toolpath.layer_height),
+        toolpath.layer_heights[pieces.layer]
+        if toolpath.adapts_heights
+        else np.full(len(bead), toolpath.layer_height),
         arc,
         np.where(closed, bead_lengths, np.inf)[bead],
         _ends(pieces.travel, bead, closed),

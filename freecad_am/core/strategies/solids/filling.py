@@ -27,6 +27,7 @@ from ...geometry.regions.strip import Period, Strip
 from ...geometry.section import Section
 from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text, Word
 from ...layers.margins import ARCS
+from ...layers.plane_field import PlaneLayer
 from ...layers.surface import Slice
 from ...parameters.filled import FILLS, FilledParameters
 from ...parameters.process import ProcessParameters
@@ -317,6 +318,8 @@ class Pictures:
         infill = Infill()
         if strategy.fill_density < 1.0:
             height = layer.number * strategy.layer_height if strategy.fill == "gyroid" else 0.0
+            if height and strategy.adapts_heights and isinstance(layer.surface, PlaneLayer):
+                height = layer.surface.height
             infill = Infill(
                 strategy.fill_density, height, strategy.fill_angle - turned, layer.buried
             )

@@ -154,7 +154,15 @@ def _for_one_speed(strategy: FilledParameters, high: bool) -> str:
     high: whether heights differ, as in layers along a guide.
     """
     settings = [
-        *(["strategy.layers: planes"] if high else []),
+        *(
+            [
+                Text("one strategy.layer_height")
+                if strategy.adapts_heights
+                else "strategy.layers: planes"
+            ]
+            if high
+            else []
+        ),
         *(["strategy.fill: contours"] if strategy.fill == "connected" else []),
         *(
             [Text("a spacing range of {0} to {0}", "100 %")]
