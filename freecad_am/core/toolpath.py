@@ -28,6 +28,7 @@ from .issues import Issue
 from .types import Array, Index
 
 PREDICTED = ("width", "height")  # columns of a bead that a bead model predicts
+OF_SEGMENTS = ("wire_share", "settings")  # optional columns that hold on the segment before a point
 
 
 def _frozen(values: Any, shape: tuple[int | None, ...], name: str) -> Array:
@@ -209,8 +210,8 @@ class Bead:
     the deposit towards the tool). parameter: (n,) strictly monotonic variable of the layer's
     polynomial, which is the unwrapped angle about the axis on parts of revolution, else the arc
     length normalised to 2 pi. speed: (n,) mm/s on the segment that ends at the point. width, height: (n,)
-    mm, predicted; None without a bead model. wire_share: mm of wire per mm of bead if the wire feed
-    follows the travel speed, else None. tangents: (n, 2, 3) unit tangents on arrival at and
+    mm, predicted; None without a bead model. wire_share: (n,) mm of wire per mm of bead on the
+    segment that ends at the point, if the wire feed follows the travel speed, else None. tangents: (n, 2, 3) unit tangents on arrival at and
     departure from each point, equal except at corners; None if the strategy does not provide them.
     ends: separate speeds at the ends, or None. scarf: shape of the seam of a closed bead, which
     `run_on` applies; on an open bead, the applied shape; or None. external: (n, k) external axis values, rad; None
@@ -229,7 +230,7 @@ class Bead:
     width: Array | None = None
     tangents: Array | None = None
     height: Array | None = None
-    wire_share: float | None = None
+    wire_share: Array | None = None
     role: BeadRole = BeadRole()
     ends: BeadEnds | None = None
     external: Array | None = None
@@ -244,7 +245,9 @@ class Bead:
             raise ValueError("a bead has at least two points")
         for name in ("points", "build", "tool"):
             object.__setattr__(self, name, _frozen(getattr(self, name), (n, 3), name))
-        for name in ("parameter", "speed", *PREDICTED, "phase", "settings"):
+        if isinstance(self.wire_share, float):  # equal everywhere
+            object.__setattr__(self, "wire_share", np.full(n, self.wire_share))
+        for name in ("parameter", "speed", *PREDICTED, "phase", *OF_SEGMENTS):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, _frozen(getattr(self, name), (n,), name))
         if self.tangents is not None:
@@ -275,6 +278,13 @@ class Bead:
         held = {name: getattr(self, name) for name in PREDICTED}
         return {name: None if column is None else change(column) for name, column in held.items()}
 
+    def map_segments(self, change: Callable[[Array], Array]) -> dict[str, Any]:
+        """Return the wire share and the settings by place, each passed through `change`."""
+        columns = {name: getattr(self, name) for name in OF_SEGMENTS}
+        return {
+            name: None if column is None else change(column) for name, column in columns.items()
+        }
+
     @cached_property
     def outline(self) -> Outline:
         """Smooth curve through the points.
@@ -296,8 +306,8 @@ class Bead:
             speed=self.speed[::-1],
             tangents=None if self.tangents is None else -self.tangents[::-1, ::-1],
             external=None if self.external is None else self.external[::-1],
-            settings=None if self.settings is None else np.roll(self.settings[::-1], 1),
             **self._predicted(lambda column: column[::-1]),
+            **self.map_segments(lambda column: np.roll(column[::-1], 1)),
         )
 
     def started_at(self, index: int) -> Bead:
@@ -322,10 +332,10 @@ class Bead:
             tool=self.tool[order],
             parameter=parameter,
             speed=self.speed[segment],
-            settings=None if self.settings is None else self.settings[segment],
             tangents=None if self.tangents is None else self.tangents[order],
             external=self._external_from(index),
             **self._predicted(lambda column: column[order]),
+            **self.map_segments(lambda column: column[segment]),
         )
 
     def _external_from(self, index: int) -> Array | None:
@@ -401,10 +411,8 @@ class Bead:
             tool=inserted_directions(self.tool),
             parameter=inserted(self.parameter),
             speed=np.insert(self.speed, at, self.speed[at]),
-            settings=None
-            if self.settings is None
-            else np.insert(self.settings, at, self.settings[at]),
             **self._predicted(inserted),
+            **self.map_segments(lambda column: np.insert(column, at, column[at])),
             tangents=None
             if bead_tangents is None
             else np.insert(bead_tangents, at, tangents[:, None], axis=0),
@@ -441,9 +449,6 @@ class Bead:
             tool=directions(self.tool),
             parameter=np.concatenate([self.parameter, again(self.parameter) + turn]),
             speed=np.concatenate([self.speed, self.speed[1 : count + 1]]),
-            settings=None
-            if self.settings is None
-            else np.concatenate([self.settings, self.settings[1 : count + 1]]),
             closed=False,
             tangents=None if self.tangents is None else self._tangents_run_on(count, tangent),
             external=None
@@ -455,6 +460,7 @@ class Bead:
                 ]
             ),
             **self._predicted(lambda column: np.concatenate([column, again(column)])),
+            **self.map_segments(lambda column: np.concatenate([column, column[1 : count + 1]])),
         )
         return extended if self.scarf is None else self.scarf.taper(extended, len(self))
 
@@ -584,8 +590,9 @@ class Layer:
     the feature has no layer below, as at the start of another solid. feature: index of the layer's
     feature in a toolpath with several features. section: section of the part in the layer's plane,
     None if unknown. coverage: how well the beads fill the section, None until measured. height: mm,
-    if layers adapt their heights to the part, else None. A layer too small for a bead is empty and
-    keeps its index.
+    if layers adapt their heights to the part, else None. slowing: time of the beads as a multiple of
+    their time at the usual speeds, above 1 where the minimum time of a layer slows them. A layer too
+    small for a bead is empty and keeps its index.
     """
 
     beads: tuple[Bead, ...]
@@ -595,6 +602,7 @@ class Layer:
     section: Section | None = None
     coverage: Coverage | None = None
     height: float | None = None
+    slowing: float = 1.0
 
     @property
     def deposit_time(self) -> float:

@@ -178,6 +178,7 @@ def build(
         "process": _process(process, toolpath),
         "beads": model_notes.beads(toolpath),
         "classes": totals.figures_by_class(motion, process),
+        "layer_times": totals.figures_by_layer(times, toolpath),
         "machine": None,
         "timing_s": {},
         "programs": [],

@@ -210,7 +210,21 @@ def _joint_table(content: Content) -> str:
 def _process(content: Content, pictures: Pictures) -> str:
     plots = pictures.process(content.features)
     section = f"<h2>Layers and path</h2>{grid_of(plots)}" if plots else ""
-    return section + classes_of(content.report["classes"])
+    times = _layer_times(content.report["layer_times"])
+    return section + times + classes_of(content.report["classes"])
+
+
+def _layer_times(rows: list[dict[str, Any]] | None) -> str:
+    """Return the table of layers whose time a minimum layer time changed."""
+    if rows is None:
+        return ""
+    columns = ("time_s", "speed_mm_s", "usual_mm_s", "wait_s")
+    head = ("time (s)", "speed (mm/s)", "usual speed (mm/s)", "wait after it (s)")
+    table = table_of(
+        [("layer", head)]
+        + [(str(row["layer"]), [figure_text(row[column]) for column in columns]) for row in rows]
+    )
+    return f"<h2>Layer times</h2>{table}"
 
 
 def _hub_layers(content: Content, pictures: Pictures) -> str:

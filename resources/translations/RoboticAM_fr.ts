@@ -354,6 +354,11 @@
         <translation>Hauteurs au-dessus de la base de la pièce, en mm, où la circularité est évaluée ; aucune : un sixième, la moitié et cinq sixièmes de la hauteur mesurée.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How short layers take longer: the machine waits after them, they are deposited more slowly at the same volume per length, or both: slowly, and the machine waits for the rest.</source>
+        <translation>Comment les couches courtes durent plus longtemps : la machine attend après elles, elles sont déposées plus lentement au même volume par longueur, ou les deux : lentement, et la machine attend le reste.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Initial fit: three or more pairs of a measured point and the same point on the part, each x y z &gt; x y z in mm, separated by semicolons; empty: automatic.</source>
         <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
@@ -637,6 +642,16 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Minimum time between the end of a layer of a solid and the start of its next layer. (s)</source>
         <translation>Temps minimal entre la fin d&apos;une couche d&apos;un solide et le début de sa couche suivante. (s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; 0: none.</source>
+        <translation>Durée minimale d&apos;une couche, du début de son premier cordon au début de la couche suivante ; 0 : aucune.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; 0: none. (s)</source>
+        <translation>Durée minimale d&apos;une couche, du début de son premier cordon au début de la couche suivante ; 0 : aucune. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -1057,6 +1072,11 @@
         <location filename="../../freecad_am/gui/inspection/view.py"/>
         <source>Size of the points in pixels.</source>
         <translation>Taille des points en pixels.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Slowest travel speed of slowed layers; none: the slowest speed of the material or of the bead model, which are limits in any case. (mm/s)</source>
+        <translation>Vitesse d&apos;avance la plus lente des couches ralenties ; aucune : la vitesse la plus lente du matériau ou du modèle de cordon, qui sont des limites dans tous les cas. (mm/s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -2057,7 +2077,7 @@
         <translation>Directions de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>By</source>
         <translation>Par</translation>
     </message>
@@ -3437,6 +3457,11 @@
         <translation>Axe horizontal</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>How short layers take longer: the machine waits after them, they are deposited more slowly at the same volume per length, or both: slowly, and the machine waits for the rest.</source>
+        <translation>Comment les couches courtes durent plus longtemps : la machine attend après elles, elles sont déposées plus lentement au même volume par longueur, ou les deux : lentement, et la machine attend le reste.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Hub</source>
         <translation>Moyeu</translation>
@@ -3802,6 +3827,11 @@
         <translation>Hauteur de couche par couche</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Layer time</source>
+        <translation>Durée de couche</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>Layer {layer} ({first} to {last}), bead {bead}, point {point}</source>
         <translation>Couche {layer} ({first} à {last}), cordon {bead}, point {point}</translation>
@@ -3867,7 +3897,7 @@
         <translation>Temps d&apos;avance et de retard et attentes entre les couches (s).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Least</source>
         <translation>Minimum</translation>
     </message>
@@ -4295,6 +4325,11 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Minimum time between the end of a layer of a solid and the start of its next layer.</source>
         <translation>Temps minimal entre la fin d&apos;une couche d&apos;un solide et le début de sa couche suivante.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; 0: none.</source>
+        <translation>Durée minimale d&apos;une couche, du début de son premier cordon au début de la couche suivante ; 0 : aucune.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -5767,9 +5802,14 @@
         <translation>Six axes rotatifs, sans poignet sphérique.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Slowest</source>
         <translation>Le plus lent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Slowest travel speed of slowed layers; none: the slowest speed of the material or of the bead model, which are limits in any case.</source>
+        <translation>Vitesse d&apos;avance la plus lente des couches ralenties ; aucune : la vitesse la plus lente du matériau ou du modèle de cordon, qui sont des limites dans tous les cas.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -8407,7 +8447,7 @@
         <translation>arbre booléen</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>both</source>
         <translation>les deux</translation>
     </message>
@@ -11038,8 +11078,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>settings by place that change the travel speed cannot be combined with this setting yet; use strategy.min_layer_time or process.between_layers.wait</source>
-        <translation>des réglages par lieu qui changent la vitesse d&apos;avance ne peuvent pas encore se combiner avec ce réglage ; utilisez strategy.min_layer_time ou process.between_layers.wait</translation>
+        <source>settings by place that change the travel speed cannot be combined with this setting yet; use strategy.layer_time or process.between_layers.wait</source>
+        <translation>des réglages par lieu qui changent la vitesse d&apos;avance ne peuvent pas encore s&apos;y combiner ; utilisez strategy.layer_time ou process.between_layers.wait</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/by_place.py"/>
@@ -11168,6 +11208,16 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>slow</source>
+        <translation>lente</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
+        <source>slowed layers cannot be combined with this setting yet; use process.between_layers.wait or strategy.layer_time.by: wait</source>
+        <translation>des couches ralenties ne peuvent pas encore s&apos;y combiner ; utilisez process.between_layers.wait ou strategy.layer_time.by: wait</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>smooth</source>
         <translation>lisse</translation>
     </message>
@@ -11270,6 +11320,11 @@
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>start the machine at the base of the robot, and name the track in `cell.external` with `carries: robot`</source>
         <translation>faites commencer la machine à la base du robot, et nommez le rail dans `cell.external` avec `carries: robot`</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>strategy.layer_time.least, {0} s, and strategy.min_layer_time, {1} s, both give the minimum time of a layer; remove min_layer_time</source>
+        <translation>strategy.layer_time.least, {0} s, et strategy.min_layer_time, {1} s, donnent tous deux la durée minimale d&apos;une couche ; supprimez min_layer_time</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
@@ -12855,6 +12910,11 @@
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>the machine stores the following lines without running them; remove the command and its M29</source>
         <translation>la machine stocke les lignes suivantes sans les exécuter ; retirez la commande et son M29</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
+        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in total, because the layers below cannot be slowed below {4} mm/s</source>
+        <translation>la machine attend avant {0} des {1} couches, jusqu&apos;à {2} s et {3} s en tout, car les couches d&apos;en dessous ne peuvent pas être ralenties sous {4} mm/s</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
@@ -14847,6 +14907,11 @@
         <translation>w = {0} v^(-1/3) + {1} / r + {2} avec R2 = {3} et RMSE = {4} mm ; une largeur de {5} mm demande des vitesses d&apos;avance de {6} à {7} mm/min</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>wait</source>
+        <translation>attente</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
         <source>waits</source>
         <translation>attend</translation>
@@ -14978,8 +15043,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>without a bead model or a ramp the travel speed is constant, and a proportional wire feed has no effect; use constant, a process.bead_model, or process.start.ramp or process.end.ramp</source>
-        <translation>sans modèle de cordon ni rampe, la vitesse d&apos;avance est constante, et une avance de fil proportionnelle est sans effet ; utilisez constant, un process.bead_model, ou process.start.ramp ou process.end.ramp</translation>
+        <source>without a bead model, a ramp or slowed layers the travel speed is constant, and a proportional wire feed has no effect; use constant, a process.bead_model, process.start.ramp, process.end.ramp or strategy.layer_time.by: slow</source>
+        <translation>sans modèle de cordon, rampe ni couches ralenties, la vitesse d&apos;avance est constante et une vitesse de fil proportionnelle est sans effet ; utilisez constant, un process.bead_model, process.start.ramp, process.end.ramp ou strategy.layer_time.by: slow</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
@@ -15570,6 +15635,11 @@
         <location filename="../../freecad_am/brep/walls/sheet.py"/>
         <source>{0} has no consistent side, like a twisted band; divide the band, or remove one of its faces</source>
         <translation>{0} ne peuvent pas être tournées d&apos;un même côté (une bande vrillée n&apos;a pas d&apos;extérieur) ; divisez la bande, ou laissez une de ses faces de côté</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>{0} has no effect on layers without a minimum time; set strategy.layer_time.least</source>
+        <translation>{0} est sans effet sur des couches sans durée minimale ; donnez strategy.layer_time.least</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
@@ -16667,6 +16737,11 @@
         <translation>{0} mm/s dépasse la vitesse maximale, {1} mm/s ; donnez une vitesse plus lente</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
+        <source>{0} mm/s is above the usual travel speed, {1} mm/s; give a slower speed</source>
+        <translation>{0} mm/s dépasse la vitesse d&apos;avance habituelle, {1} mm/s ; donnez une vitesse plus lente</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
         <source>{0} mm/s would work, but a scarf seam needs {1} mm/s; lower the travel speed, or remove process.seam.scarf</source>
         <translation>{0} mm/s conviendrait, mais une couture en biseau demande {1} mm/s ; diminuez la vitesse d&apos;avance, ou supprimez process.seam.scarf</translation>
@@ -16765,6 +16840,16 @@
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>{0} needs a machine that is the URDF of the whole cell, such as machine: bay.urdf; otherwise give a list of mechanisms</source>
         <translation>{0} est pour une machine qui est l&apos;URDF de toute la cellule, comme machine: bay.urdf ; ou donnez une liste de mécanismes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
+        <source>{0} needs a slowest travel speed; give strategy.layer_time.slowest or process.material.slowest</source>
+        <translation>{0} demande une vitesse d&apos;avance minimale ; donnez strategy.layer_time.slowest ou process.material.slowest</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
+        <source>{0} needs a wire feed that follows the travel speed, but process.wire.feed is 0; give the wire feed, or use strategy.layer_time.by: wait</source>
+        <translation>{0} demande une vitesse de fil qui suit la vitesse d&apos;avance, mais process.wire.feed vaut 0 ; donnez la vitesse de fil, ou utilisez strategy.layer_time.by: wait</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
@@ -16882,6 +16967,11 @@
         <translation>{0} de {1} est {2} de {3} ; choisissez-la sur l&apos;objet d&apos;origine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
+        <source>{0} of {1} layers are slowed, to {2} % of their speed and {3} mm/s at the least, for a minimum time of {4} s; the wire feed follows</source>
+        <translation>{0} des {1} couches sont ralenties, jusqu&apos;à {2} % de leur vitesse et {3} mm/s au minimum, pour une durée minimale de {4} s ; la vitesse de fil suit</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>{0} of {1} layers deviate by more than 20 % from the layer height of {2} mm, the first of them layer {3}; layer {4} is {5} mm above the previous layer; for even layers use spacing: arc-length</source>
         <translation>{0} de {1} couches s&apos;écartent de plus de 20 % de la hauteur de couche de {2} mm, la première étant la couche {3} ; la couche {4} est à {5} mm au-dessus de la précédente ; pour des couches égales utilisez spacing: arc-length</translation>
@@ -16890,6 +16980,11 @@
         <location filename="../../freecad_am/core/layers/guide_field.py"/>
         <source>{0} of {1} layers deviate from the layer height: layer {2} is {3} to {4} mm high, with the largest deviation from {5} mm at {6}; strategy.band allows {7} %, but {8} % is needed; raise strategy.band, or choose a guide in the middle of the part or with a gentler bend</source>
         <translation>{0} couches sur {1} s&apos;écartent de la hauteur de couche : la couche {2} a {3} à {4} mm de haut, avec le plus grand écart aux {5} mm en {6} ; strategy.band permet {7} %, mais il faut {8} % ; augmentez strategy.band, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
+        <source>{0} of {1} layers take up to {2} s less than strategy.layer_time.least, {3} s, because they cannot be slowed below {4} mm/s; use strategy.layer_time.by: both to wait for the rest</source>
+        <translation>{0} des {1} couches durent jusqu&apos;à {2} s de moins que strategy.layer_time.least, {3} s, car elles ne peuvent pas être ralenties sous {4} mm/s ; utilisez strategy.layer_time.by: both pour attendre le reste</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
@@ -17175,6 +17270,11 @@
         <location filename="../../freecad_am/core/planning/findings.py"/>
         <source>{0} would be at {1} {2}, beyond its limit of {3} {4}; move the part on the table</source>
         <translation>{0} serait à {1} {2}, sa limite est {3} {4} ; déplacez la pièce sur la table</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
+        <source>{0} would make beads larger, because the wire feed is constant; use process.wire.feed_mode: proportional, or strategy.layer_time.by: wait</source>
+        <translation>{0} grossirait les cordons, car la vitesse de fil est constante ; utilisez process.wire.feed_mode: proportional, ou strategy.layer_time.by: wait</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from ..issues import InputError, Text
 from . import field as f
 from .records import Point, convert_texts
-from .strategy import LAYER_TIME, MEND, LayerParameters
+from .strategy import LAYER_TIME, MEND, LayerParameters, LayerTimeParameters, layer_time
 from .vectors import Axis, axis_text, direction_text
 
 
@@ -186,6 +186,7 @@ class FilledParameters(LayerParameters):
         "others are printed.",
         low=0.0,
     )
+    layer_time: LayerTimeParameters = layer_time()
     deflection: float = f.parameter(
         0.0,
         f.ANGLE,
@@ -266,6 +267,7 @@ class FilledParameters(LayerParameters):
         if self.walls == math.inf:
             object.__setattr__(self, "walls", "inf")
         f.check(self, "strategy")
+        self.check_timing()
         object.__setattr__(self, "spacing_range", tuple(self.spacing_range))
         if not self.spacing_range[0] <= 1.0 <= self.spacing_range[1]:
             ends = Text.joined(" to ", (f"{100.0 * end:g} %" for end in self.spacing_range))

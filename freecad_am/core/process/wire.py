@@ -29,7 +29,8 @@ class Taken(NamedTuple):
     """Deposition rate of the beads of one class in one phase, with the same settings by place.
 
     phase: one of PHASES. rate: mm3/s. layer, bead: indices of the first occurrence. section: mean
-    cross-section, mm2. settings: sum of 2^entry.
+    cross-section, mm2. settings: sum of 2^entry. fed: mean length of wire per length of bead if the wire
+    feed follows the travel speed, else 0.
     """
 
     bead_class: str
@@ -39,6 +40,7 @@ class Taken(NamedTuple):
     bead: int
     section: float
     settings: int = 0
+    fed: float = 0.0
 
     @property
     def name(self) -> str:
@@ -81,13 +83,12 @@ def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int
     tuple of (float, int, int) or None
         Deviation, layer and bead; None if wire feed or bead width is unknown.
     """
-    follows = follows_speed(toolpath)  # mm3 per mm
     deviations = [
         (
             abs(
                 (
-                    wire_rate / process.travel_speed / rate_of_class.section
-                    if follows
+                    process.wire.section * rate_of_class.fed / rate_of_class.section
+                    if rate_of_class.fed
                     else wire_rate / rate_of_class.rate
                 )
                 - 1.0
@@ -139,19 +140,26 @@ def taken_of(toolpath: Toolpath) -> list[Taken]:
             bead, toolpath.bead_width * toolpath.layer_height, toolpath
         ).items():
             key = bead.role.bead_class, phase, active
-            sums[key] = sums.get(key, np.zeros(3)) + sum_
+            sums[key] = sums.get(key, np.zeros(4)) + sum_
             first_bead.setdefault(key, (layer, number))
     return [
-        Taken(*key[:2], float(volume / time), *first_bead[key], float(volume / length), key[2])
-        for key, (volume, time, length) in sums.items()
+        Taken(
+            *key[:2],
+            float(volume / time),
+            *first_bead[key],
+            float(volume / length),
+            key[2],
+            float(wire / length),
+        )
+        for key, (volume, time, length, wire) in sums.items()
         if time > 0.0
     ]
 
 
 def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[tuple[int, int], Array]:
-    """Return volume, mm3, time, s, and length, mm, (3,) of a bead by phase and settings by place.
+    """Return sums (4,) of a bead by phase and settings by place.
 
-    Before the phase of each segment is planned, they are derived from the lengths of the bead ends.
+    They are volume, mm3, time, s, length, mm, and length of wire that follows the speed, mm. Before the phase of each segment is planned, they are derived from the lengths of the bead ends.
     """
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     section: Array | float = usual
@@ -161,7 +169,8 @@ def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[tuple[int, int],
             np.full(len(bead), toolpath.bead_width) if bead.width is None else bead.width
         )
         section = 0.5 * (area[1:] + area[:-1])
-    amounts = np.stack([section * length, length / bead.speed[1:], length])
+    share = np.zeros(len(length)) if bead.wire_share is None else bead.wire_share[1:]
+    amounts = np.stack([section * length, length / bead.speed[1:], length, share * length])
     if bead.phase is not None or bead.settings is not None:
         phases = np.full(len(length), MIDDLE) if bead.phase is None else bead.phase[1:].astype(int)
         kinds = np.stack([phases, settings_of(bead)[1:].astype(int)])
@@ -173,7 +182,7 @@ def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[tuple[int, int],
 
 
 def _sums_before_planning(bead: Bead, amounts: Array) -> dict[int, Array]:
-    """Return the sums of `_sums` by phase of a bead without phases. amounts: (3, n) of its segments."""
+    """Return the sums of `_sums` by phase of a bead without phases. amounts: (4, n) of its segments."""
     total, length = amounts.sum(axis=1), amounts[2]
     ends = bead.ends
     if ends is None:
@@ -190,15 +199,16 @@ def _sums_before_planning(bead: Bead, amounts: Array) -> dict[int, Array]:
                 0.0,
                 float((long / len(steps) / steps).sum()) - total[1] * long / size,
                 0.0,
+                0.0,
             ]
     for phase, long, speed in (
         (AT_START, ends.start_length, ends.start_speed),
         (AT_END, ends.end_length, ends.end_speed),
     ):
         if long:
-            sums[phase] = np.array(
-                [total[0] * long / size, long / speed if speed else total[1] * long / size, long]
-            )
+            sums[phase] = total * (long / size)
+            if speed:
+                sums[phase][1] = long / speed
     return sums
 
 
@@ -216,7 +226,10 @@ def model_wire_feed(process: ProcessParameters, model: BeadModel) -> float:
 
 
 def set_wire_feed(
-    toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None
+    toolpath: Toolpath,
+    process: ProcessParameters,
+    model: BeadModel | None,
+    is_slowed: bool = False,
 ) -> Toolpath:
     """Return the toolpath with its wire feed.
 
@@ -232,6 +245,8 @@ def set_wire_feed(
         Wire, bead width and travel speed.
     model : BeadModel or None
         Bead model that sets the speeds, if any.
+    is_slowed : bool, optional
+        Whether layers will be slowed, so that the wire feed has to follow.
 
     Returns
     -------
@@ -247,9 +262,9 @@ def set_wire_feed(
     bead_rate = width * height * speed
     balanced = bead_rate / process.wire.section
     if isinstance(process.wire.feed, str):
-        fed_path = _following(replace(toolpath, wire_feed=balanced), process)
+        fed_path = _following(replace(toolpath, wire_feed=balanced), process, is_slowed)
         return _check_classes(_by_place(fed_path, process), process)
-    fed_path = _following(replace(toolpath, wire_feed=process.wire.feed), process)
+    fed_path = _following(replace(toolpath, wire_feed=process.wire.feed), process, is_slowed)
     fed_path = _by_place(fed_path, process)
     wire_rate = process.wire.feed * process.wire.section
     if (
@@ -296,19 +311,30 @@ def _fills(toolpath: Toolpath, wire_rate: float) -> bool:
     return abs(wire_rate * seconds - deposited) <= TOLERANCE * deposited
 
 
-def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
+def _following(toolpath: Toolpath, process: ProcessParameters, is_slowed: bool) -> Toolpath:
     """Return the toolpath with a wire feed that follows the travel speed, if applicable.
 
-    This needs the feed mode `proportional` and beads with ramps. For stepped speeds a schedule gives the feed.
+    This needs the feed mode `proportional`, and beads with ramps or slowed layers. For stepped speeds a schedule gives
+    the feed. Where the width of a bead differs, the feed is nominal at the speed for this width.
     """
     ramped = any(bead.ends is not None and bead.ends.has_ramps for _, _, bead in toolpath)
-    if process.wire.feed_mode != "proportional" or not toolpath.wire_feed or not ramped:
+    if (
+        process.wire.feed_mode != "proportional"
+        or not toolpath.wire_feed
+        or not (ramped or is_slowed)
+    ):
         return toolpath
     share = toolpath.wire_feed / process.travel_speed
     return replace(
         toolpath,
         layers=tuple(
-            replace(layer, beads=tuple(replace(bead, wire_share=share) for bead in layer.beads))
+            replace(
+                layer,
+                beads=tuple(
+                    replace(bead, wire_share=share * (_usual_speeds(bead, process) / bead.speed))
+                    for bead in layer.beads
+                ),
+            )
             for layer in toolpath.layers
         ),
     )
@@ -344,6 +370,16 @@ def _by_place(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
             for layer in toolpath.layers
         ),
     )
+
+
+def _usual_speeds(bead: Bead, process: ProcessParameters) -> Array:
+    """Return the travel speeds (n,) of the class and the places of a bead, without those for its width."""
+    combinations, index = np.unique(settings_of(bead).astype(int), return_inverse=True)
+    speeds = [
+        process.at_place(bead.role.bead_class, active).travel_speed
+        for active in combinations.tolist()
+    ]
+    return np.asarray(np.array(speeds)[np.ravel(index)])
 
 
 def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:

@@ -302,6 +302,52 @@ def _between_layers(motion: Motion, process: ProcessParameters, waits: Sequence[
 # ---- Statistics of a motion by bead class, and totals of a job
 
 
+def figures_by_layer(times: Timeline, toolpath: Toolpath) -> list[dict[str, Any]] | None:
+    """Return time, speed and wait of each layer, where the minimum layer time changed any.
+
+    Parameters
+    ----------
+    times : Timeline
+        Times of the motion of the toolpath.
+    toolpath : Toolpath
+        Waits and slowing of its layers.
+
+    Returns
+    -------
+    list of dict or None
+        For each layer with beads: `time_s` from its first deposit to that of the next layer, of the
+        last layer to its end; `speed_mm_s`, mean of its beads, and `usual_mm_s` without slowing;
+        `wait_s` before the next layer. None if no layer is slowed and none waits.
+    """
+    if not any(layer.slowing > 1.0 or layer.wait > 0.0 for layer in toolpath.layers):
+        return None
+    rows = np.flatnonzero(times.motion.deposit)
+    layers = times.motion.layer[rows]
+    starts = np.flatnonzero(np.diff(layers, prepend=-1))
+    end_rows = np.append(rows[starts[1:]], rows[-1])
+    dark = times.waits - times.lit
+    figures = []
+    for start_row, end_row in zip(rows[starts].tolist(), end_rows.tolist(), strict=True):
+        number = int(times.motion.layer[start_row])
+        is_last = end_row == rows[-1]
+        span = slice(start_row, end_row + 1)
+        moves = times.motion.deposit[span] & times.motion.moves[span]
+        moves &= times.motion.layer[span] == number
+        seconds = times.motion.duration[span][moves]
+        speed = float((times.motion.speed[span][moves] * seconds).sum() / seconds.sum())
+        figures.append(
+            {
+                "layer": number,
+                "time_s": float((times.leave if is_last else times.arrive)[end_row])
+                - float(times.arrive[start_row]),
+                "speed_mm_s": speed,
+                "usual_mm_s": speed * toolpath.layers[number].slowing,
+                "wait_s": 0.0 if is_last else float(dark[start_row:end_row].sum()),
+            }
+        )
+    return figures
+
+
 def figures_by_class(motion: Motion, process: ProcessParameters) -> list[dict[str, Any]]:
     """Return statistics for each bead class of the motion, in the order of CLASSES.
 

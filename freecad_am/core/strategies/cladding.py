@@ -316,7 +316,7 @@ def plan(
         order_beads(ranked, strategy.order),
         strategy.wait,
         process.rapid_speed,
-        strategy.min_layer_time,
+        strategy.timing.to_wait,
     )
     noted = [
         note

@@ -21,7 +21,12 @@ from ...core.parameters.filled import PLANES
 from ...core.parameters.settings import WHERE, Setting
 from ...core.process import classes, model_notes, seams
 from ...core.process.bead_model import check_speeds
-from ...core.process.cooling_waits import enforce_layer_time, remove_waits
+from ...core.process.cooling_waits import (
+    enforce_layer_time,
+    remove_waits,
+    slow_layers,
+    slowest_speed,
+)
 from ...core.process.deposit.pieces import deposited_twice
 from ...core.process.wire import set_wire_feed
 from ...core.strategies import support
@@ -124,14 +129,17 @@ def layers_of(inputs: Given) -> CoreToolpath:
 
 def layers_before_places(inputs: Given) -> CoreToolpath:
     """Return layers and beads of a feature at the speeds of the job and its classes, as `layers_of`."""
-    process = inputs.process
-    if process.bead_model == "none" and process.wire.feed_mode != "constant" and not process.ramped:
+    process, timing = inputs.process, inputs.strategy.timing
+    is_slowed = slowest_speed(timing, process, inputs.model) > 0.0
+    if process.bead_model == "none" and not (
+        process.wire.feed_mode == "constant" or process.ramped or is_slowed
+    ):
         raise InputError(
             "NOT_FOR_FAMILY",
             "process.wire.feed_mode",
-            "without a bead model or a ramp the travel speed is constant, and a proportional "
-            "wire feed has no effect; use constant, a process.bead_model, or process.start.ramp "
-            "or process.end.ramp",
+            "without a bead model, a ramp or slowed layers the travel speed is constant, and a "
+            "proportional wire feed has no effect; use constant, a process.bead_model, "
+            "process.start.ramp, process.end.ramp or strategy.layer_time.by: slow",
         )
     classes.refuse_speeds(process)
     seams.check_parameters(process.seam)
@@ -162,9 +170,7 @@ def complete_layers(layers: CoreToolpath, inputs: Given, stack: Stack) -> CoreTo
     toolpath = seams.set_scarfs(classes.set_bead_ends(layers, process), process)
     if not family.is_filled or _waits_by_speed(inputs):
         toolpath = remove_waits(toolpath)
-        toolpath = enforce_layer_time(
-            toolpath, getattr(inputs.strategy, "min_layer_time", 0.0), process.rapid_speed
-        )
+        toolpath = enforce_layer_time(toolpath, inputs.strategy.timing.to_wait, process.rapid_speed)
     twice = toolpath.checks.twice if family.is_filled else deposited_twice(toolpath)
     return dataclasses.replace(
         toolpath.add_checks(twice=twice),
@@ -185,8 +191,15 @@ def _locate_angle(toolpath: CoreToolpath, inputs: Given) -> seams.LocateAngle | 
 def _waits_by_speed(inputs: Given) -> bool:
     """Return whether the waits of a filled feature must be found again, at the speeds of places.
 
-    Raises InputError NOT_YET for a wait between visits to a solid.
+    Raises InputError NOT_YET for a wait between visits to a solid, with speeds of places or layers.
     """
+    if inputs.strategy.timing.slows and getattr(inputs.strategy, "wait", 0.0) > 0.0:
+        raise InputError(
+            "NOT_YET",
+            "strategy.wait",
+            "slowed layers cannot be combined with this setting yet; use process.between_layers.wait or "
+            "strategy.layer_time.by: wait",
+        )
     if all(setting.travel_speed is None for setting in inputs.process.settings):
         return False
     if getattr(inputs.strategy, "wait", 0.0) > 0.0:
@@ -194,9 +207,9 @@ def _waits_by_speed(inputs: Given) -> bool:
             "NOT_YET",
             "strategy.wait",
             "settings by place that change the travel speed cannot be combined with this setting "
-            "yet; use strategy.min_layer_time or process.between_layers.wait",
+            "yet; use strategy.layer_time or process.between_layers.wait",
         )
-    return getattr(inputs.strategy, "min_layer_time", 0.0) > 0.0
+    return inputs.strategy.timing.to_wait > 0.0
 
 
 def stacking_direction(toolpath: CoreToolpath, inputs: Given) -> Array:
@@ -220,8 +233,12 @@ def kept_clear(
 
 
 def add_wire_speed(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
-    """Set the wire feed of a toolpath, and report speeds outside the material's range."""
-    return check_speeds(set_wire_feed(toolpath, inputs.process, inputs.model), inputs.process)
+    """Set the wire feed, slow short layers, and report speeds outside the material's range."""
+    process, model, timing = inputs.process, inputs.model, inputs.strategy.timing
+    toolpath = set_wire_feed(toolpath, process, model, timing.slows)
+    if timing.slows:
+        toolpath = slow_layers(toolpath, timing, process, slowest_speed(timing, process, model))
+    return check_speeds(toolpath, process)
 
 
 def measure_infill(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:

@@ -201,7 +201,7 @@ def sections(bead: Bead, toolpath: Toolpath, process: ProcessParameters) -> Arra
     if bead.wire_feeds is not None:
         fed = process.wire.section * wire_of(bead)[1:] / bead.speed[1:]
     elif bead.wire_share is not None:
-        fed = np.full(len(bead) - 1, process.wire.section * bead.wire_share)
+        fed = process.wire.section * bead.wire_share[1:]
     elif toolpath.wire_feed:
         fed = process.wire.section * toolpath.wire_feed / bead.speed[1:]
     else:

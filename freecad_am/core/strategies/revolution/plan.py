@@ -106,10 +106,12 @@ def plan(
     tilting = Tilting(wall, strategy, leaning_build, nozzle, under, process.bead_width)
     issues: list[Issue] = []
     if strategy.path == "spiral":
-        if strategy.min_layer_time > 0.0:
+        if strategy.timing.least > 0.0:
             raise InputError(
                 "BAD_VALUE",
-                "strategy.min_layer_time",
+                "strategy.min_layer_time"
+                if strategy.min_layer_time > 0.0
+                else "strategy.layer_time.least",
                 "a spiral has no layers to wait between; use path: layers, a slower "
                 "process.travel_speed, or remove the waiting time",
             )

@@ -68,7 +68,7 @@ def notes(
     )
     issues += _single_layers(layers, strategy)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
-    if waits and strategy.min_layer_time > 0.0:
+    if waits and strategy.timing.to_wait > 0.0:
         issues.append(
             Issue(
                 NOTE,
@@ -81,7 +81,7 @@ def notes(
                     len(layers),
                     max(waits),
                     sum(waits),
-                    strategy.min_layer_time,
+                    strategy.timing.to_wait,
                     strategy.wait,
                 ),
             )

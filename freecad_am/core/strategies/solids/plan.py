@@ -295,7 +295,7 @@ def plan(
     heights: dict[
         int, list[float]
     ] = {}  # minimum and maximum height of each uneven layer over all stacks
-    order = IslandOrder(as_below=strategy.min_layer_time > 0.0)
+    order = IslandOrder(as_below=strategy.timing.least > 0.0)
     stacks = list(field.stacks(solids, strategy))
     for stack_number, stack in enumerate(stacks):
         order.below = None  # this stack has no layer yet
@@ -347,7 +347,7 @@ def plan(
             strategy.least_bead,
         )
     course = order_beads(ranked, strategy.order)
-    layers = add_waits(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
+    layers = add_waits(course, strategy.wait, process.rapid_speed, strategy.timing.to_wait)
     layers = add_sections(layers, sections, course)
     layers = add_heights(layers, stacks, course)
     levels = stacks[0].levels
