@@ -18,7 +18,7 @@ from statistics import median
 
 import arm_apart
 import numpy as np
-from arm_jobs import CLEARANCE, EXAMPLE, LAYER, box_text, cylinder, is_path, run_plan, sample_joints
+from arm_jobs import CLEARANCE, EXAMPLE, box_text, cylinder, is_path, run_plan, sample_joints
 
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.machines import machine
@@ -34,7 +34,7 @@ JOB = """version: 1
 name: arm
 part: {{file: {step}}}
 {fixtures}
-strategy: {{kind: revolution, layer_height: {layer}, chord_error: 0.2 mm}}
+strategy: {{kind: revolution, layer_height: 15 mm, chord_error: 0.2 mm}}
 build_direction: {{mode: fixed}}
 cell: {{machine: {robot}, limits: paper, setup: tool-on-robot, deposition_point: [{x}, {y}, {z}, 0, 0, 0],
        nozzle: {{length: 60 mm, tool: [120, 0, 200, 0, {lean}, 0]}}, branch: {branch}, obstacles: {obstacles}{key}}}
@@ -67,7 +67,6 @@ class Obstacle:
         )
         return JOB.format(
             step=EXAMPLE,
-            layer=LAYER,
             robot=ROBOT,
             x=x,
             y=y,

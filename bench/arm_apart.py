@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from arm_jobs import CLEARANCE, EXAMPLE, LAYER, box_text, cylinder, is_path, run_plan, sample_joints
+from arm_jobs import CLEARANCE, EXAMPLE, box_text, cylinder, is_path, run_plan, sample_joints
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.external import MECHANISMS
@@ -36,7 +36,7 @@ POSITIONS = choose(1000, 50)  # random joint positions that decide which link pa
 JOB = """version: 1
 name: arm
 part: {{file: {step}}}
-strategy: {{kind: revolution, layer_height: {layer}, chord_error: 0.2 mm}}
+strategy: {{kind: revolution, layer_height: 15 mm, chord_error: 0.2 mm}}
 build_direction: {direction}
 cell: {{machine: {robot}, setup: tool-on-robot, {cell}, nozzle: {nozzle}{key}}}
 program: {{post: none}}
@@ -69,7 +69,6 @@ class MovingBodies:
         )
         return JOB.format(
             step=EXAMPLE,
-            layer=LAYER,
             robot=self.robot,
             direction=self.direction,
             cell=self.cell + beside,

@@ -16,13 +16,10 @@ import numpy as np
 from freecad_am.core.geometry.cylinders import Cylinder
 from freecad_am.core.types import Array
 
-from sizes import choose
-
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = ROOT / "resources" / "examples" / "hemisphere.step"
 CLEARANCE = 10.0  # mm of clearance
-SAMPLES_PER_ROW = choose(10, 2)  # samples from one row to the next, including the row
-LAYER = choose("15 mm", "30 mm")  # layer height of the jobs
+SAMPLES_PER_ROW = 10  # samples from one row to the next, including the row
 
 
 def run_plan(folder: Path, job: str) -> subprocess.CompletedProcess[str]:

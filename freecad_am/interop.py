@@ -352,15 +352,10 @@ def write_waypoints(obj: Any, path: str) -> str:
             "UNSUPPORTED_FILE", path, "waypoints are written as .csv; use the extension .csv"
         )
     motion, columns, units = motion_of(obj)
-    planned = _path_of(obj)
-    source = planned if planned.Proxy.kind == "toolpath" else planned.Toolpath
-    toolpath = source.Proxy.value(source)
-    heights = toolpath.layer_heights if toolpath.adapts_heights else None
 
     def write(unfinished: str) -> None:
         with open(unfinished, "w", encoding="ascii", newline="") as stream:
-            by_place = bool(motion.settings.any())
-            stream.writelines(waypoints.text(motion, columns, units, by_place, heights))
+            stream.writelines(waypoints.text(motion, columns, units, bool(motion.settings.any())))
 
     return _write_whole(path, write)
 

@@ -14,7 +14,6 @@ PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
 # folder or module -> the package's own folders and modules that it may import
 OURS = {
     "core/types": set(),
-    "core/progress": set(),
     "core/number_texts": set(),
     "core/issues": {"core/number_texts"},
     "core/program": set(),
@@ -265,7 +264,7 @@ def broken(path):
             f"{row}/__init__.py imports {module}: it re-exports nothing"
             for module, _ in imported(path)
         ]
-    allowed = OURS[row] | {row, "core/types", "core/progress"}
+    allowed = OURS[row] | {row, "core/types"}
     file = path.relative_to(PACKAGE).with_suffix("").as_posix()
     foreign = (
         FOREIGN[row.split("/")[0]] | FILE_EXCEPTIONS.get(file, set()) | sys.stdlib_module_names

@@ -13,13 +13,3 @@ autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True, "show-inheritance": False}
 numpydoc_show_class_members = False
-
-
-def _show_defaults(app, what, name, obj, options, signature, annotation):
-    """Return a signature that Sphinx can parse, where defaults are made by factories."""
-    return signature and signature.replace("<factory>", "..."), annotation
-
-
-def setup(app):
-    """Connect to Sphinx."""
-    app.connect("autodoc-process-signature", _show_defaults)

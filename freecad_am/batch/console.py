@@ -102,10 +102,10 @@ class Session:
     def progress(self, text: str) -> None:
         """Show the current activity on a terminal; end the command if Ctrl-C was pressed."""
         self.check()
-        if self._tty and escaped(text) != self._progress:
+        if self._tty:
             self._clear()
             _write(self._saved[1], escaped(text))
-            self._progress = escaped(text)
+            self._progress = text
 
     def check(self) -> None:
         """Raise KeyboardInterrupt if FreeCAD swallowed a Ctrl-C."""

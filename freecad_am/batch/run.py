@@ -379,19 +379,11 @@ def _write(
         else api.result(stages.program).files
     )
     results = outputs.results(stages, [f"{outputs.PROGRAMS}/{name}" for name in programs])
-    toolpath, motion = made.as_run(results, cell)
+    _, motion = made.as_run(results, cell)
     axes, units = ((), ()) if cell is None else (cell.machine.columns, cell.machine.units)
     with stages.timed("waypoints", session):
-        files.write(
-            outputs.WAYPOINTS,
-            waypoints.text(
-                motion,
-                axes,
-                units,
-                bool(job.process.settings),
-                toolpath.layer_heights if toolpath.adapts_heights else None,
-            ),
-        )
+        by_place = bool(job.process.settings)
+        files.write(outputs.WAYPOINTS, waypoints.text(motion, axes, units, by_place))
     for name, content in programs.items():
         files.write(f"{outputs.PROGRAMS}/{name}", content)
     with stages.timed("document", session):

@@ -73,9 +73,6 @@ CROSSED = (
 )
 TOLERANCE = 1e-6  # relative; surfaces that differ by less count as the same surface
 FITTED = 1e-3  # mm; maximum deviation of a spline surface from a cylinder or cone
-# A fit ends after 40 steps if it is still 0.1 mm off: cylinders and cones take 2 to 28, and a bulged
-# surface would take 400, a second each
-FIT_STEPS, NEAR_FIT = 40, 0.1
 EDGE_SAMPLES = 361  # sample points per edge, sufficient for a full circle
 MIN_GAP_RAD = math.radians(
     3.0
@@ -372,11 +369,7 @@ def _best_axis(points: Array, origin: Array, z: Array) -> tuple[Array, Array]:
         along, rho, slope, at_origin = _profile(points, *shift_axis(by))
         return (rho - slope * along - at_origin) / size
 
-    tolerances = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-14)
-    fit = least_squares(residual, np.zeros(4), max_nfev=FIT_STEPS, **tolerances)
-    if not fit.success and size * np.abs(fit.fun).max() <= NEAR_FIT:
-        fit = least_squares(residual, np.zeros(4), **tolerances)
-    return shift_axis(fit.x)
+    return shift_axis(least_squares(residual, np.zeros(4), xtol=1e-14, ftol=1e-14, gtol=1e-14).x)
 
 
 def _faces_inwards(face: Any, origin: Array, z: Array) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -28,7 +28,6 @@ from .issues import Issue
 from .types import Array, Index
 
 PREDICTED = ("width", "height")  # columns of a bead that a bead model predicts
-OF_SEGMENTS = ("wire_share", "settings")  # optional columns that hold on the segment before a point
 
 
 def _frozen(values: Any, shape: tuple[int | None, ...], name: str) -> Array:
@@ -210,15 +209,14 @@ class Bead:
     the deposit towards the tool). parameter: (n,) strictly monotonic variable of the layer's
     polynomial, which is the unwrapped angle about the axis on parts of revolution, else the arc
     length normalised to 2 pi. speed: (n,) mm/s on the segment that ends at the point. width, height: (n,)
-    mm, predicted; None without a bead model. wire_share: (n,) mm of wire per mm of bead on the
-    segment that ends at the point, if the wire feed follows the travel speed, else None. tangents: (n, 2, 3) unit tangents on arrival at and
+    mm, predicted; None without a bead model. wire_share: mm of wire per mm of bead if the wire feed
+    follows the travel speed, else None. tangents: (n, 2, 3) unit tangents on arrival at and
     departure from each point, equal except at corners; None if the strategy does not provide them.
     ends: separate speeds at the ends, or None. scarf: shape of the seam of a closed bead, which
     `run_on` applies; on an open bead, the applied shape; or None. external: (n, k) external axis values, rad; None
     until planned. phase: (n,) segment phases, see `motion.PHASES`; None until planned. settings:
     (n,) settings by place on the segment that ends at the point, as the sum of 2^entry of
-    `process.settings`; None without settings. wire_feeds: mm/s of wire by such a sum if the feed
-    differs by place, else None.
+    `process.settings`; None without settings.
     """
 
     points: Array
@@ -230,14 +228,13 @@ class Bead:
     width: Array | None = None
     tangents: Array | None = None
     height: Array | None = None
-    wire_share: Array | None = None
+    wire_share: float | None = None
     role: BeadRole = BeadRole()
     ends: BeadEnds | None = None
     external: Array | None = None
     phase: Array | None = None
     scarf: Scarf | None = None
     settings: Array | None = None
-    wire_feeds: Mapping[int, float] | None = None
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -245,9 +242,7 @@ class Bead:
             raise ValueError("a bead has at least two points")
         for name in ("points", "build", "tool"):
             object.__setattr__(self, name, _frozen(getattr(self, name), (n, 3), name))
-        if isinstance(self.wire_share, float):  # equal everywhere
-            object.__setattr__(self, "wire_share", np.full(n, self.wire_share))
-        for name in ("parameter", "speed", *PREDICTED, "phase", *OF_SEGMENTS):
+        for name in ("parameter", "speed", *PREDICTED, "phase", "settings"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, _frozen(getattr(self, name), (n,), name))
         if self.tangents is not None:
@@ -278,13 +273,6 @@ class Bead:
         held = {name: getattr(self, name) for name in PREDICTED}
         return {name: None if column is None else change(column) for name, column in held.items()}
 
-    def map_segments(self, change: Callable[[Array], Array]) -> dict[str, Any]:
-        """Return the wire share and the settings by place, each passed through `change`."""
-        columns = {name: getattr(self, name) for name in OF_SEGMENTS}
-        return {
-            name: None if column is None else change(column) for name, column in columns.items()
-        }
-
     @cached_property
     def outline(self) -> Outline:
         """Smooth curve through the points.
@@ -306,8 +294,8 @@ class Bead:
             speed=self.speed[::-1],
             tangents=None if self.tangents is None else -self.tangents[::-1, ::-1],
             external=None if self.external is None else self.external[::-1],
+            settings=None if self.settings is None else np.roll(self.settings[::-1], 1),
             **self._predicted(lambda column: column[::-1]),
-            **self.map_segments(lambda column: np.roll(column[::-1], 1)),
         )
 
     def started_at(self, index: int) -> Bead:
@@ -332,10 +320,10 @@ class Bead:
             tool=self.tool[order],
             parameter=parameter,
             speed=self.speed[segment],
+            settings=None if self.settings is None else self.settings[segment],
             tangents=None if self.tangents is None else self.tangents[order],
             external=self._external_from(index),
             **self._predicted(lambda column: column[order]),
-            **self.map_segments(lambda column: column[segment]),
         )
 
     def _external_from(self, index: int) -> Array | None:
@@ -411,8 +399,10 @@ class Bead:
             tool=inserted_directions(self.tool),
             parameter=inserted(self.parameter),
             speed=np.insert(self.speed, at, self.speed[at]),
+            settings=None
+            if self.settings is None
+            else np.insert(self.settings, at, self.settings[at]),
             **self._predicted(inserted),
-            **self.map_segments(lambda column: np.insert(column, at, column[at])),
             tangents=None
             if bead_tangents is None
             else np.insert(bead_tangents, at, tangents[:, None], axis=0),
@@ -449,6 +439,9 @@ class Bead:
             tool=directions(self.tool),
             parameter=np.concatenate([self.parameter, again(self.parameter) + turn]),
             speed=np.concatenate([self.speed, self.speed[1 : count + 1]]),
+            settings=None
+            if self.settings is None
+            else np.concatenate([self.settings, self.settings[1 : count + 1]]),
             closed=False,
             tangents=None if self.tangents is None else self._tangents_run_on(count, tangent),
             external=None
@@ -460,7 +453,6 @@ class Bead:
                 ]
             ),
             **self._predicted(lambda column: np.concatenate([column, again(column)])),
-            **self.map_segments(lambda column: np.concatenate([column, column[1 : count + 1]])),
         )
         return extended if self.scarf is None else self.scarf.taper(extended, len(self))
 
@@ -520,26 +512,6 @@ def settings_of(bead: Bead) -> Array:
     return np.asarray(np.r_[bead.settings[1], bead.settings[1:]])
 
 
-def wire_of(bead: Bead) -> Array:
-    """Return the wire feed on the segments that end at the points of a bead.
-
-    Parameters
-    ----------
-    bead : Bead
-        The bead of n points.
-
-    Returns
-    -------
-    (n,) array
-        Feeds, mm/s; NaN if the feed is the same along all beads.
-    """
-    if bead.wire_feeds is not None:
-        combinations, index = np.unique(settings_of(bead).astype(int), return_inverse=True)
-        feeds = np.array([bead.wire_feeds[active] for active in combinations.tolist()])
-        return np.asarray(feeds[np.ravel(index)])
-    return np.full(len(bead), np.nan) if bead.wire_share is None else bead.wire_share * bead.speed
-
-
 @dataclass(frozen=True)
 class SpeedLaw:
     """Bead width and height against travel speed v, mm/s.
@@ -589,9 +561,7 @@ class Layer:
     wait: pause of the machine before the layer, s, for the deposit below to cool. first: whether
     the feature has no layer below, as at the start of another solid. feature: index of the layer's
     feature in a toolpath with several features. section: section of the part in the layer's plane,
-    None if unknown. coverage: how well the beads fill the section, None until measured. height: mm,
-    if layers adapt their heights to the part, else None. slowing: time of the beads as a multiple of
-    their time at the usual speeds, above 1 where the minimum time of a layer slows them. A layer too
+    None if unknown. coverage: how well the beads fill the section, None until measured. A layer too
     small for a bead is empty and keeps its index.
     """
 
@@ -601,16 +571,6 @@ class Layer:
     feature: int = 0
     section: Section | None = None
     coverage: Coverage | None = None
-    height: float | None = None
-    slowing: float = 1.0
-
-    @property
-    def deposit_time(self) -> float:
-        """Time to deposit the beads at their speeds, s."""
-        return math.fsum(
-            float((lengths(np.diff(bead.points, axis=0)) / bead.speed[1:]).sum())
-            for bead in self.beads
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -622,8 +582,7 @@ class Checks:
     part, volume missed by the beads and volume of stray beads, mm3. uneven: (k, 3) index, minimum
     and maximum height, mm, of layers of uneven height. twice: over-deposition, mm3, of beads as wide as
     their spacing on other beads of the layer. fitted: fit to a scan. predicted: comparison of the
-    predicted deposit with the part. adapted: of layers that adapt their heights: largest cusp, mm,
-    constant layer height with the same cusp, mm, its number of layers, and its deposit time, s.
+    predicted deposit with the part.
     """
 
     unsupported: float | None = None
@@ -633,7 +592,6 @@ class Checks:
     twice: float | None = None
     fitted: Fitted | None = None
     predicted: PredictedShape | None = None
-    adapted: tuple[float, float, int, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -741,19 +699,7 @@ class Toolpath:
         """
         heights = [feature.values.layer_height for feature in self.features]
         heights = heights or [self.layer_height]
-        return np.array(
-            [
-                heights[layer.feature if self.features else 0]
-                if layer.height is None
-                else layer.height
-                for layer in self.layers
-            ]
-        )
-
-    @property
-    def adapts_heights(self) -> bool:
-        """Whether layers adapt their heights to the part."""
-        return any(layer.height is not None for layer in self.layers)
+        return np.array([heights[layer.feature if self.features else 0] for layer in self.layers])
 
     @property
     def traits(self) -> Family:

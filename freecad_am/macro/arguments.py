@@ -314,7 +314,7 @@ def checked_links(
                 raise InputError(
                     "BAD_INPUT",
                     by_name[name].key,
-                    "{} depends on {}; choose another object",
+                    "{} is made from {} itself; choose another object",
                     target.Label,
                     stage.Label,
                 )

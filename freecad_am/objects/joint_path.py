@@ -106,7 +106,7 @@ class JointPath(Stage):
         (
             "SmallestCondition",
             "App::PropertyFloat",
-            "Smallest inverse condition number of the Jacobian while depositing.",
+            "Smallest condition of the Jacobian while depositing.",
         ),
         (
             "TotalTime",

@@ -290,10 +290,17 @@ class Toolpath(Stage):
     def zones(self, obj: Any, process: ProcessParameters) -> tuple[Zone, ...]:
         """Return the geometry of each setting by place of a process; empty without settings.
 
-        Faces are those of the first feature's part. Raises the InputErrors of `zones_of`.
+        Raises InputError NOT_YET for several features, and the InputErrors of `zones_of`.
         """
         if not process.settings:
             return ()
+        if obj.Further:
+            raise InputError(
+                "NOT_YET",
+                f"{obj.Label}.Settings",
+                "settings by place are for one feature yet; remove them, or put each feature in its "
+                "own job",
+            )
         return zones_of(process.settings, obj.Zones, obj.Feature.Source[0])
 
     def own_speeds(self, obj: Any) -> tuple[bool, ...]:

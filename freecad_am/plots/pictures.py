@@ -227,7 +227,7 @@ def condition(source: Source, rows: Rows) -> tuple[Chart, ...]:
     )
     top = 1.15 * float(np.nanmax(values, initial=0.05))
     chart = Chart(
-        "Inverse condition number of the Jacobian (0 is singular)",
+        "Condition of the Jacobian (0 is singular)",
         rows.quantity,
         Quantity("σmin / σmax"),
         curves,
@@ -427,24 +427,11 @@ def distributions(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
 
 
 def heights(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """Chart the heights of layers that adapt to the part, else predicted heights and their error.
+    """Chart predicted and nominal layer height per layer, and the accumulated height error.
 
-    Predicted and nominal height per layer, and the accumulated height error, need a bead model.
+    Empty without a bead model.
     """
-    if source.toolpath.adapts_heights:
-        return (layer_height_chart(source.toolpath.layer_heights, layers),)
     return height_charts(model_notes.beads(source.toolpath), layers)
-
-
-def layer_height_chart(heights: Array, layers: tuple[int, int]) -> Chart:
-    """Chart the heights (l,), mm, of layers that adapt to the part."""
-    number = np.arange(layers[0], min(layers[1] + 1, len(heights)))
-    return Chart(
-        "Layer height by layer",
-        LAYER_NUMBER,
-        Quantity("height", "mm"),
-        (Curve("layer height", number.astype(float), heights[number], 0, MARKED),),
-    )
 
 
 def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tuple[Chart, ...]:
@@ -565,7 +552,7 @@ def section(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     """
     if source.group is None:
         return ()
-    number, height = layers[1], float(source.toolpath.layer_heights[layers[1]])
+    number, height = layers[1], source.toolpath.layer_height
     base, rows = source.group.base, source.motion.deposit & (source.motion.layer == layers[1])
     if not rows.any():
         return ()

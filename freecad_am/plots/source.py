@@ -56,9 +56,7 @@ class Source:
         """Return the volumes of part and deposit in each plane layer, None for other layers."""
         if self.group is None:
             return None
-        toolpath = self.toolpath
-        height = toolpath.layer_heights if toolpath.adapts_heights else toolpath.layer_height
-        return slabs(self.group, height, self.motion.position, self.volumes)
+        return slabs(self.group, self.toolpath.layer_height, self.motion.position, self.volumes)
 
     @cached_property
     def times(self) -> Timeline:

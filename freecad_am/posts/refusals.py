@@ -62,7 +62,7 @@ def wire_refused(no_wire: str) -> InputError:
     return InputError(
         "NO_WIRE_OUTPUT",
         "process.wire.feed_mode",
-        "{}; use constant and one wire feed in all places, or another controller",
+        "{}; use constant, or another controller",
         no_wire,
     )
 
@@ -135,8 +135,8 @@ def refuse_schedules(
         raise InputError(
             "SCHEDULE",
             "process.schedule",
-            "the schedule changes within beads, but the controller appears to set outputs "
-            "before the motion reaches the point; change only the speed at start, end and by "
+            "beads change their schedule on the way, but the controller appears to set outputs "
+            "before the motion reaches the place; change only the speed at start, end and by "
             "place, or use another controller",
         )
     numbers = [block.number for block in program.blocks if isinstance(block, Schedule)]

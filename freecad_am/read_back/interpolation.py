@@ -252,7 +252,7 @@ def _frame_issues(
                 ERROR,
                 "VERIFY_FRAME",
                 Text(
-                    "the program moves {} from axis {} on, but the plan moves {} from axis {} on",
+                    "the text moves {} from axis {} on, but the plan moves {} from axis {} on",
                     text.unit or "no positioner",
                     text.first_external,
                     program.unit,

@@ -106,23 +106,6 @@ class Results:
 VERSION = 1
 
 
-def _height_figures(toolpath: Toolpath) -> dict[str, Any]:
-    """Return the report key `adapted_heights` of a toolpath whose layers adapt to the part, else nothing."""
-    if toolpath.checks.adapted is None:
-        return {}
-    cusp, height, count, seconds = toolpath.checks.adapted
-    heights = toolpath.layer_heights
-    return {
-        "adapted_heights": {
-            "least_mm": float(heights.min()),
-            "most_mm": float(heights.max()),
-            "cusp_mm": cusp,
-            "deposit_s": sum(layer.deposit_time for layer in toolpath.layers),
-            "constant": {"height_mm": height, "layers": count, "deposit_s": seconds},
-        }
-    }
-
-
 def build(
     name: str,
     toolpath: Toolpath,
@@ -157,7 +140,6 @@ def build(
             {"layer": int(layer), "least_mm": float(smallest), "largest_mm": float(largest)}
             for layer, smallest, largest in toolpath.checks.uneven
         ],
-        **_height_figures(toolpath),
         "unsupported_mm": toolpath.checks.unsupported,
         "on_part": None
         if toolpath.checks.on_part is None
@@ -178,7 +160,6 @@ def build(
         "process": _process(process, toolpath),
         "beads": model_notes.beads(toolpath),
         "classes": totals.figures_by_class(motion, process),
-        "layer_times": totals.figures_by_layer(times, toolpath),
         "machine": None,
         "timing_s": {},
         "programs": [],

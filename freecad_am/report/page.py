@@ -36,7 +36,7 @@ NO_VIEWER = "Open this page in a browser with scripts and WebGL to see the path 
 _PER_METHOD = (
     ("feasible", "feasible"),
     ("objective_value", "objective"),
-    ("condition_min", "smallest inverse condition number"),
+    ("condition_min", "smallest condition"),
     ("planning_time_s", "planning time, s"),
 )
 _PER_AXIS = (
@@ -53,7 +53,7 @@ _SPACING = (
     ("mean_mm", "mean, mm"),
     ("max_mm", "largest, mm"),
     ("length_mm", "length, mm"),
-    ("turn_max_deg_mm", "sharpest turn away from corners, deg/mm"),
+    ("turn_max_deg_mm", "sharpest turn beside corners, deg/mm"),
     ("cornered_layers", "layers with corners"),
     ("corner_max_deg", "sharpest corner, deg"),
 )
@@ -61,7 +61,7 @@ _MOTION = (
     ("duration_s", "time of all moves, s"),
     ("deposit_s", "deposit at the travel speed, s"),
     ("axis_limited_s", "deposit as fast as the axes can, s"),
-    ("condition_min", "smallest inverse condition number"),
+    ("condition_min", "smallest condition"),
 )
 _MOTION_PER_AXIS = (
     ("speed_ratio_max", "largest share of the speed limit"),
@@ -168,9 +168,7 @@ def _cards(report: dict[str, Any]) -> str:
             )
         )
     if report["joints"] is not None and report["joints"]["condition_min"] is not None:
-        cards.append(
-            (figure_text(report["joints"]["condition_min"]), "smallest inverse condition number")
-        )
+        cards.append((figure_text(report["joints"]["condition_min"]), "smallest condition"))
     boxes = "".join(
         f'<div class="card"><b>{escape(units.text(value))}</b><span>{escape(units.text(word))}</span></div>'
         for value, word in cards
@@ -210,21 +208,7 @@ def _joint_table(content: Content) -> str:
 def _process(content: Content, pictures: Pictures) -> str:
     plots = pictures.process(content.features)
     section = f"<h2>Layers and path</h2>{grid_of(plots)}" if plots else ""
-    times = _layer_times(content.report["layer_times"])
-    return section + times + classes_of(content.report["classes"])
-
-
-def _layer_times(rows: list[dict[str, Any]] | None) -> str:
-    """Return the table of layers whose time a minimum layer time changed."""
-    if rows is None:
-        return ""
-    columns = ("time_s", "speed_mm_s", "usual_mm_s", "wait_s")
-    head = ("time (s)", "speed (mm/s)", "usual speed (mm/s)", "wait after it (s)")
-    table = table_of(
-        [("layer", head)]
-        + [(str(row["layer"]), [figure_text(row[column]) for column in columns]) for row in rows]
-    )
-    return f"<h2>Layer times</h2>{table}"
+    return section + classes_of(content.report["classes"])
 
 
 def _hub_layers(content: Content, pictures: Pictures) -> str:

@@ -34,7 +34,7 @@ def build(
     fields = {field.name: field for field in dataclasses.fields(factory)}  # type: ignore[arg-type]
     known_keys(section, (*fields, *also), prefix)
     arguments = {
-        name: read_value(f.spec_of(field), field, section[name], f"{prefix}.{name}")
+        name: _value(f.spec_of(field), field, section[name], f"{prefix}.{name}")
         for name, field in fields.items()
         if name in section
     }
@@ -85,8 +85,7 @@ def text(value: Any, key: str) -> str:
     return value
 
 
-def read_value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) -> Any:
-    """Return the value of a key of a job in inner units. Raises InputError as `build`."""
+def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) -> Any:
     if spec.kind == f.GROUP:
         factory: Any = field.default_factory
         return factory() if value is None else build(factory, value, key)

@@ -118,7 +118,7 @@ def text_of(path: str, label: str) -> str:
         ) from None
     except ValueError as error:
         raise InputError(
-            "NO_FILE", path, "this is not a valid file name ({}); check the path", error
+            "NO_FILE", path, "no file can have the name ({}); check the path", error
         ) from None
 
 

@@ -30,8 +30,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Analogue output for the wire speed, if the wire feed follows the travel speed or differs by place.</source>
-        <translation>Sortie analogique pour la vitesse du fil, si le dévidage suit la vitesse d&apos;avance ou diffère selon l&apos;endroit.</translation>
+        <source>Analogue output for the wire speed, if the wire feed follows the travel speed.</source>
+        <translation>Sortie analogique pour la vitesse du fil, si l&apos;avance du fil suit la vitesse d&apos;avance.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -234,6 +234,11 @@
         <translation>Faces qui sont recouvertes.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Fastest travel speed for the material; faster beads are reported. (mm/s)</source>
+        <translation>Vitesse d&apos;avance la plus rapide pour le matériau ; les cordons plus rapides sont signalés. (mm/s)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Feed of joint moves: the time of each move (G93), or the speed of the linear axes wherever they move (G94).</source>
         <translation>Avance des mouvements articulaires : le temps de chaque mouvement (G93), ou la vitesse des axes linéaires partout où ils bougent (G94).</translation>
@@ -270,12 +275,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>For position point: x y z in part coordinates, mm; every closed bead starts as close to this point as possible.</source>
-        <translation>Pour la position point : x y z en coordonnées de la pièce, en mm ; chaque cordon fermé commence le plus près possible de ce point.</translation>
+        <source>For position point: x y z in part coordinates, mm; every closed bead starts at its place nearest to this point.</source>
+        <translation>Pour la position point : x y z en coordonnées de la pièce, en mm ; chaque cordon fermé commence à son endroit le plus proche de ce point.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>For position spread: minimum distance between the start of a closed bead and the starts of other beads of its layer and of the layer below.</source>
+        <source>For position spread: least distance between the start of a closed bead and the starts of other beads of its layer and of the layer below.</source>
         <translation>Pour la position spread : distance minimale entre le début d&apos;un cordon fermé et les débuts des autres cordons de sa couche et de la couche inférieure.</translation>
     </message>
     <message>
@@ -329,6 +334,11 @@
         <translation>G-code : mouvements à déposer : part, all, ou des groupes et types du trancheur, séparés par des virgules, comme part, support. Jupe, bordure, radeau, support, tours, lissage et lignes de purge ne font pas partie de part.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Greatest width of adaptive beads, as a share of their usual width. (%)</source>
+        <translation>Largeur maximale des cordons adaptatifs, en part de leur largeur habituelle. (%)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Group output, H word, register or analogue output that carries the schedule number; for KUKA the first of eight outputs.</source>
         <translation>Sortie de groupe, mot H, registre ou sortie analogique qui porte le numéro du programme de soudage ; chez KUKA la première de huit sorties.</translation>
@@ -337,11 +347,6 @@
         <location filename="../../freecad_am/objects/solid_feature.py"/>
         <source>Height along the stacking direction.</source>
         <translation>Hauteur suivant la direction d&apos;empilement.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Height of the lowest layer; the layer height is then that of the highest layer, and each layer of planes is as high as the cusp permits. (mm)</source>
-        <translation>Hauteur de la couche la plus basse ; la hauteur de couche est alors celle de la plus haute, et chaque couche plane est aussi haute que la crête le permet. (mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -354,11 +359,6 @@
         <translation>Hauteurs au-dessus de la base de la pièce, en mm, où la circularité est évaluée ; aucune : un sixième, la moitié et cinq sixièmes de la hauteur mesurée.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>How short layers take longer: the machine waits after them, they are deposited more slowly at the same volume per length, or both: slowly, and the machine waits for the rest.</source>
-        <translation>Comment les couches courtes durent plus longtemps : la machine attend après elles, elles sont déposées plus lentement au même volume par longueur, ou les deux : lentement, et la machine attend le reste.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Initial fit: three or more pairs of a measured point and the same point on the part, each x y z &gt; x y z in mm, separated by semicolons; empty: automatic.</source>
         <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
@@ -367,6 +367,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Input value, as the program reads it, at 0 degrees Celsius.</source>
         <translation>Valeur de l&apos;entrée à 0 degré Celsius, telle que le programme la lit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Iterations after which the optimiser gives up on a layer.</source>
+        <translation>Nombre d&apos;itérations après lequel l&apos;optimiseur renonce à une couche.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -407,11 +412,6 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Largest error of the local distance of constant-distance layers.</source>
         <translation>Plus grande erreur de la distance locale des couches constant-distance.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Largest height of the steps between layers, measured normal to the surface, where layer heights adapt to the slope of the part. (mm)</source>
-        <translation>Plus grande hauteur des marches entre les couches, mesurée normalement à la surface, là où les hauteurs de couche s&apos;adaptent à la pente de la pièce. (mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -574,29 +574,9 @@
         <translation>Plus grande distance d&apos;un point touché au meilleur ajustement.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Maximum number of iterations of the optimiser per layer.</source>
-        <translation>Nombre maximal d&apos;itérations de l&apos;optimiseur par couche.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Maximum points per program file; longer programs are chained.</source>
         <translation>Nombre maximal de points d&apos;un fichier de programme ; les plus longs sont enchaînés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Maximum travel speed for the material; faster beads are reported. (mm/s)</source>
-        <translation>Vitesse d&apos;avance maximale pour le matériau ; les cordons plus rapides sont signalés. (mm/s)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Maximum turn of a bead within the wall in smooth layers, if the band allows it. (deg/mm)</source>
-        <translation>Rotation maximale d&apos;un cordon dans la paroi dans les couches smooth, si la bande le permet. (deg/mm)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Maximum width of adaptive beads, as a share of their nominal width. (%)</source>
-        <translation>Largeur maximale des cordons adaptatifs, en part de leur largeur nominale. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -644,16 +624,6 @@
         <translation>Temps minimal entre la fin d&apos;une couche d&apos;un solide et le début de sa couche suivante. (s)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; 0: none.</source>
-        <translation>Durée minimale d&apos;une couche, du début de son premier cordon au début de la couche suivante ; 0 : aucune.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; 0: none. (s)</source>
-        <translation>Durée minimale d&apos;une couche, du début de son premier cordon au début de la couche suivante ; 0 : aucune. (s)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; the machine waits if needed, and islands keep the same order in every layer, so that each cools while others are printed.</source>
         <translation>Durée minimale d&apos;une couche, du début de son premier cordon au premier de la suivante ; la machine attend au besoin, et les îlots gardent le même ordre à chaque couche, afin que chacun refroidisse pendant que d&apos;autres sont déposés.</translation>
@@ -672,16 +642,6 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; the machine waits if needed. (s)</source>
         <translation>Durée minimale d&apos;une couche, du début de son premier cordon à celui de la suivante ; la machine attend ce qui manque. (s)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Minimum travel speed for the material; slower beads are reported. (mm/s)</source>
-        <translation>Vitesse d&apos;avance minimale pour le matériau ; les cordons plus lents sont signalés. (mm/s)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Minimum width of beads in planes where neighbours leave less space, as a share of their nominal width; 100 %: beads are never narrowed, and layers get higher there. (%)</source>
-        <translation>Largeur minimale des cordons dans des plans là où les voisins laissent moins de place, en part de leur largeur nominale ; 100 % : les cordons ne sont jamais rétrécis, et les couches y deviennent plus hautes. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -895,8 +855,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Range of bead widths, as a share of the nominal width and spacing, so that contours fill a region evenly and beads in thin places match its width. (%)</source>
-        <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement nominaux, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces. (%)</translation>
+        <source>Range of bead widths, as a share of the usual width and spacing, so that contours fill a region evenly and beads in thin places match its width. (%)</source>
+        <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -975,8 +935,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Settings by place; later entries override earlier ones, and all override bead classes. Example: layers 0 to 4: travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.</source>
-        <translation>Réglages par lieu ; les suivants remplacent les précédents, et tous remplacent les classes de cordons. Exemple : layers 0 to 4 : travel_speed 4, schedule 3 ; inside Zone : travel_speed 5 ; ou none.</translation>
+        <source>Settings by place; later ones win, and all win over bead classes, such as: layers 0 to 4: travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.</source>
+        <translation>Réglages par lieu ; les suivants l&apos;emportent, et tous l&apos;emportent sur les classes de cordons, comme : layers 0 to 4 : travel_speed 4, schedule 3 ; inside Zone : travel_speed 5 ; ou none.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -1074,9 +1034,14 @@
         <translation>Taille des points en pixels.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Slowest travel speed of slowed layers; none: the slowest speed of the material or of the bead model, which are limits in any case. (mm/s)</source>
-        <translation>Vitesse d&apos;avance la plus lente des couches ralenties ; aucune : la vitesse la plus lente du matériau ou du modèle de cordon, qui sont des limites dans tous les cas. (mm/s)</translation>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Slowest travel speed for the material; slower beads are reported. (mm/s)</source>
+        <translation>Vitesse d&apos;avance la plus lente pour le matériau ; les cordons plus lents sont signalés. (mm/s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Smallest condition of the Jacobian while depositing.</source>
+        <translation>Plus petite condition du jacobien pendant le dépôt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -1089,9 +1054,9 @@
         <translation>Plus petite condition permise ; auto : en chaque point un quart de sa valeur à RZ = 0, mais au moins 0.02.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>Smallest inverse condition number of the Jacobian while depositing.</source>
-        <translation>Plus petit conditionnement inverse du jacobien pendant le dépôt.</translation>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Smallest width of beads in planes where neighbours leave less space, as a share of their usual width; 100 %: beads are never narrowed, and layers get higher there. (%)</source>
+        <translation>Plus petite largeur des cordons dans des plans là où les voisins laissent moins de place, en part de leur largeur habituelle ; 100 % : les cordons ne sont jamais rétrécis, et les couches y deviennent plus hautes. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -1354,6 +1319,11 @@
         <translation>Vitesse de la torche le long du dépôt.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Turn of the bead within the wall that smooth layers stay below if the band allows. (deg/mm)</source>
+        <translation>Rotation du cordon dans la paroi au-dessous de laquelle restent les couches smooth là où la bande le permet. (deg/mm)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
         <source>Type of the file.</source>
         <translation>Ce qu&apos;est le fichier.</translation>
@@ -1410,8 +1380,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Width of contours, and of lines inside contours, in planes: adaptive beads follow the thickness of a region if this covers the region better; fixed ones have the nominal width.</source>
-        <translation>Largeur, dans les plans, des contours et des lignes à l&apos;intérieur de contours : les cordons adaptatifs suivent l&apos;épaisseur d&apos;une région si cela la couvre mieux ; les cordons fixes ont la largeur nominale.</translation>
+        <source>Width of contours, and of lines inside contours, in planes: adaptive beads follow the thickness of a region if this covers the region better; fixed ones have the usual width.</source>
+        <translation>Largeur, dans les plans, des contours et des lignes à l&apos;intérieur de contours : les cordons adaptatifs suivent l&apos;épaisseur d&apos;une région si cela la couvre mieux ; les cordons fixes ont la largeur habituelle.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -1478,8 +1448,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>(other solids rest on the curved surface of {0}; choose it as the substrate to bend their layers)</source>
-        <translation>(d&apos;autres solides reposent sur la surface courbe de {0} ; choisissez-le comme substrat pour courber leurs couches)</translation>
+        <source>(other solids are on the bend of {0}: as the substrate it shapes their layers)</source>
+        <translation>(d&apos;autres solides sont sur la courbure de {0} : comme substrat celui-ci donne sa forme à leurs couches)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -1662,6 +1632,11 @@
         <translation>Une copie d&apos;une autre machine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
+        <source>A dry run has tried loading parts, and tools that are attached to other tools</source>
+        <translation>Une marche à vide a essayé le chargement des parties et les outils fixés à d&apos;autres outils</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>A joint would need {:.0f} % of its maximum speed: the planner will slow the bead down, or reject the curve</source>
         <translation>Une articulation aurait besoin de {:.0f} % de sa vitesse maximale : le planificateur ralentira le cordon, ou refusera la courbe</translation>
@@ -1818,8 +1793,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Analogue output for the wire speed, if the wire feed follows the travel speed or differs by place.</source>
-        <translation>Sortie analogique pour la vitesse du fil, si le dévidage suit la vitesse d&apos;avance ou diffère selon l&apos;endroit.</translation>
+        <source>Analogue output for the wire speed, if the wire feed follows the travel speed.</source>
+        <translation>Sortie analogique pour la vitesse du fil, si l&apos;avance du fil suit la vitesse d&apos;avance.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/new_job.py"/>
@@ -2077,7 +2052,7 @@
         <translation>Directions de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>By</source>
         <translation>Par</translation>
     </message>
@@ -2297,6 +2272,11 @@
         <translation>Un clic montre le point d&apos;une ligne dans la trajectoire ; un clic sur la trajectoire marque sa ligne</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
+        <source>Click a place of the part in the 3D view first.</source>
+        <translation>Cliquez d&apos;abord un endroit de la pièce dans la vue 3D.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>Click edges of one object.</source>
         <translation>Cliquez sur des arêtes d&apos;un seul objet.</translation>
@@ -2417,6 +2397,11 @@
         <translation>Condition</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
+        <source>Condition of the Jacobian (0 is singular)</source>
+        <translation>Condition du jacobien (0 est singulier)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/post.py"/>
         <source>Configuration supervision (ConfL) may be off, and joint values have the meaning in the machine file</source>
         <translation>La surveillance des configurations (ConfL) peut être désactivée, et les valeurs articulaires ont le sens que donne le fichier machine</translation>
@@ -2500,11 +2485,6 @@
         <location filename="../../freecad_am/gui/families/curves.py"/>
         <source>Curves…</source>
         <translation>Courbes…</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Cusp</source>
-        <translation>Crête</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -2987,6 +2967,11 @@
         <translation>Le plus rapide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Fastest travel speed for the material; faster beads are reported.</source>
+        <translation>Vitesse d&apos;avance la plus rapide pour le matériau ; les cordons plus rapides sont signalés.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
         <source>Feasible points, %</source>
         <translation>Points faisables, %</translation>
@@ -3070,11 +3055,6 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>First bead of the first layer to deposit.</source>
         <translation>Premier cordon de cette couche.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
-        <source>First click a point on the part in the 3D view.</source>
-        <translation>Cliquez d&apos;abord un point de la pièce dans la vue 3D.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/tool.py"/>
@@ -3178,12 +3158,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>For position point: x y z in part coordinates, mm; every closed bead starts as close to this point as possible.</source>
-        <translation>Pour la position point : x y z en coordonnées de la pièce, en mm ; chaque cordon fermé commence le plus près possible de ce point.</translation>
+        <source>For position point: x y z in part coordinates, mm; every closed bead starts at its place nearest to this point.</source>
+        <translation>Pour la position point : x y z en coordonnées de la pièce, en mm ; chaque cordon fermé commence à son endroit le plus proche de ce point.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>For position spread: minimum distance between the start of a closed bead and the starts of other beads of its layer and of the layer below.</source>
+        <source>For position spread: least distance between the start of a closed bead and the starts of other beads of its layer and of the layer below.</source>
         <translation>Pour la position spread : distance minimale entre le début d&apos;un cordon fermé et les débuts des autres cordons de sa couche et de la couche inférieure.</translation>
     </message>
     <message>
@@ -3377,6 +3357,11 @@
         <translation>Aller à {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Greatest width of adaptive beads, as a share of their usual width.</source>
+        <translation>Largeur maximale des cordons adaptatifs, en part de leur largeur habituelle.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Group output, H word, register or analogue output that carries the schedule number; for KUKA the first of eight outputs.</source>
         <translation>Sortie de groupe, mot H, registre ou sortie analogique qui porte le numéro du programme de soudage ; chez KUKA la première de huit sorties.</translation>
@@ -3418,11 +3403,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Height of the lowest layer; the layer height is then that of the highest layer, and each layer of planes is as high as the cusp permits.</source>
-        <translation>Hauteur de la couche la plus basse ; la hauteur de couche est alors celle de la plus haute, et chaque couche plane est aussi haute que la crête le permet.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Height within a layer at which the part is cut for its outline.</source>
         <translation>À quelle hauteur une couche prend son contour de la pièce.</translation>
     </message>
@@ -3448,18 +3428,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
-        <source>Hides seams from the current view of the part</source>
-        <translation>Cache les coutures de la vue actuelle de la pièce</translation>
+        <source>Hides seams from the present view of the part</source>
+        <translation>Cache les coutures à la vue actuelle de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Horizontal axis</source>
         <translation>Axe horizontal</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>How short layers take longer: the machine waits after them, they are deposited more slowly at the same volume per length, or both: slowly, and the machine waits for the rest.</source>
-        <translation>Comment les couches courtes durent plus longtemps : la machine attend après elles, elles sont déposées plus lentement au même volume par longueur, ou les deux : lentement, et la machine attend le reste.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
@@ -3557,9 +3532,9 @@
         <translation>Contrôler…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/canvas.py"/>
-        <source>Inverse condition number of the Jacobian (0 is singular)</source>
-        <translation>Conditionnement inverse du jacobien (0 est singulier)</translation>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Iterations after which the optimiser gives up on a layer.</source>
+        <translation>Nombre d&apos;itérations après lequel l&apos;optimiseur renonce à une couche.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
@@ -3752,11 +3727,6 @@
         <translation>Plus grande erreur de la distance locale des couches constant-distance.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Largest height of the steps between layers, measured normal to the surface, where layer heights adapt to the slope of the part.</source>
-        <translation>Plus grande hauteur des marches entre les couches, mesurée normalement à la surface, là où les hauteurs de couche s&apos;adaptent à la pente de la pièce.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Largest hole in a mesh that is closed automatically, with a note; larger holes are rejected.</source>
         <translation>Les trous des maillages jusqu&apos;à cette largeur sont fermés, ce qui est signalé ; les plus grands sont refusés.</translation>
@@ -3820,16 +3790,6 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Layer height</source>
         <translation>Hauteur de couche</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/plots/pictures.py"/>
-        <source>Layer height by layer</source>
-        <translation>Hauteur de couche par couche</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Layer time</source>
-        <translation>Durée de couche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -3897,14 +3857,9 @@
         <translation>Temps d&apos;avance et de retard et attentes entre les couches (s).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Least</source>
         <translation>Minimum</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least height</source>
-        <translation>Hauteur minimale</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -4025,11 +3980,6 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>LinuxCNC: whether M428 and M429 switch between tip and axis coordinates; false for machines that only move axes.</source>
         <translation>LinuxCNC : M428 et M429 commutent entre les coordonnées de la pointe et des axes ; false pour les machines qui ne déplacent que des axes.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>Loading of parts, and tools attached to other tools, were tested in a dry run</source>
-        <translation>Le chargement des parties et les outils fixés à d&apos;autres outils ont été essayés en marche à vide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -4207,29 +4157,9 @@
         <translation>Plus grande distance d&apos;un point touché au meilleur ajustement.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Maximum number of iterations of the optimiser per layer.</source>
-        <translation>Nombre maximal d&apos;itérations de l&apos;optimiseur par couche.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Maximum points per program file; longer programs are chained.</source>
         <translation>Nombre maximal de points d&apos;un fichier de programme ; les plus longs sont enchaînés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Maximum travel speed for the material; faster beads are reported.</source>
-        <translation>Vitesse d&apos;avance maximale pour le matériau ; les cordons plus rapides sont signalés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Maximum turn of a bead within the wall in smooth layers, if the band allows it.</source>
-        <translation>Rotation maximale d&apos;un cordon dans la paroi dans les couches smooth, si la bande le permet.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Maximum width of adaptive beads, as a share of their nominal width.</source>
-        <translation>Largeur maximale des cordons adaptatifs, en part de leur largeur nominale.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -4327,11 +4257,6 @@
         <translation>Temps minimal entre la fin d&apos;une couche d&apos;un solide et le début de sa couche suivante.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; 0: none.</source>
-        <translation>Durée minimale d&apos;une couche, du début de son premier cordon au début de la couche suivante ; 0 : aucune.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; the machine waits if needed, and islands keep the same order in every layer, so that each cools while others are printed.</source>
         <translation>Durée minimale d&apos;une couche, du début de son premier cordon au premier de la suivante ; la machine attend au besoin, et les îlots gardent le même ordre à chaque couche, afin que chacun refroidisse pendant que d&apos;autres sont déposés.</translation>
@@ -4340,16 +4265,6 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; the machine waits if needed.</source>
         <translation>Durée minimale d&apos;une couche, du début de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Minimum travel speed for the material; slower beads are reported.</source>
-        <translation>Vitesse d&apos;avance minimale pour le matériau ; les cordons plus lents sont signalés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Minimum width of beads in planes where neighbours leave less space, as a share of their nominal width; 100 %: beads are never narrowed, and layers get higher there.</source>
-        <translation>Largeur minimale des cordons dans des plans là où les voisins laissent moins de place, en part de leur largeur nominale ; 100 % : les cordons ne sont jamais rétrécis, et les couches y deviennent plus hautes.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -4453,8 +4368,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
-        <source>Near a singularity: inverse condition number {value:.3f}, required at least {than:.3f}</source>
-        <translation>Près d&apos;une singularité : conditionnement inverse {value:.3f}, au moins {than:.3f} requis</translation>
+        <source>Near a singularity: condition {value:.3f}, required at least {than:.3f}</source>
+        <translation>Près d&apos;une singularité : condition {value:.3f}, au moins {than:.3f} requis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
@@ -4498,13 +4413,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
-        <source>No findings: the motion stays away from limits, singularities and maximum speeds</source>
-        <translation>Rien à signaler : le mouvement reste loin des limites, des singularités et des vitesses maximales</translation>
+        <source>No findings: no limit, singularity or speed is near</source>
+        <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
-        <source>No findings: the motion stays away from limits, singularities and maximum speeds, and no link of the robot touches an obstacle</source>
-        <translation>Rien à signaler : le mouvement reste loin des limites, des singularités et des vitesses maximales, et aucun corps du robot ne touche d&apos;obstacle</translation>
+        <source>No findings: no limit, singularity or speed is near, and no link of the robot touches an obstacle</source>
+        <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche, et aucun corps du robot ne touche d&apos;obstacle</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
@@ -4718,8 +4633,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Opens a part or mesh; a separate process reads the file, so a damaged file cannot crash FreeCAD</source>
-        <translation>Ouvre une pièce ou un maillage ; un processus à part lit le fichier, donc un fichier endommagé ne peut pas faire planter FreeCAD</translation>
+        <source>Opens a part or mesh from a file in a separate process, even if the file is damaged</source>
+        <translation>Ouvre une pièce ou un maillage d&apos;un fichier dans un processus à part, même si le fichier est endommagé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/whats_this.py"/>
@@ -5303,8 +5218,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Range of bead widths, as a share of the nominal width and spacing, so that contours fill a region evenly and beads in thin places match its width.</source>
-        <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement nominaux, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
+        <source>Range of bead widths, as a share of the usual width and spacing, so that contours fill a region evenly and beads in thin places match its width.</source>
+        <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -5618,8 +5533,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Settings by place; later entries override earlier ones, and all override bead classes. Example: layers 0 to 4: travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.</source>
-        <translation>Réglages par lieu ; les suivants remplacent les précédents, et tous remplacent les classes de cordons. Exemple : layers 0 to 4 : travel_speed 4, schedule 3 ; inside Zone : travel_speed 5 ; ou none.</translation>
+        <source>Settings by place; later ones win, and all win over bead classes, such as: layers 0 to 4: travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.</source>
+        <translation>Réglages par lieu ; les suivants l&apos;emportent, et tous l&apos;emportent sur les classes de cordons, comme : layers 0 to 4 : travel_speed 4, schedule 3 ; inside Zone : travel_speed 5 ; ou none.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -5695,6 +5610,11 @@
         <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>Show all</source>
         <translation>Tout montrer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/view.py"/>
+        <source>Show everything, also with a double click</source>
+        <translation>Montrer tout ; un double-clic aussi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/views/cell.py"/>
@@ -5802,14 +5722,24 @@
         <translation>Six axes rotatifs, sans poignet sphérique.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Slowest</source>
         <translation>Le plus lent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Slowest travel speed of slowed layers; none: the slowest speed of the material or of the bead model, which are limits in any case.</source>
-        <translation>Vitesse d&apos;avance la plus lente des couches ralenties ; aucune : la vitesse la plus lente du matériau ou du modèle de cordon, qui sont des limites dans tous les cas.</translation>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Slowest travel speed for the material; slower beads are reported.</source>
+        <translation>Vitesse d&apos;avance la plus lente pour le matériau ; les cordons plus lents sont signalés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>Smallest condition of the Jacobian while depositing.</source>
+        <translation>Plus petite condition du jacobien pendant le dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
+        <source>Smallest condition: {0:.3f}, in layer {2}</source>
+        <translation>Condition la plus faible : {0:.3f}, couche {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -5820,16 +5750,6 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Smallest inverse condition number allowed; auto: at each point a quarter of its value at RZ = 0, but at least 0.02.</source>
         <translation>Plus petite condition permise ; auto : en chaque point un quart de sa valeur à RZ = 0, mais au moins 0.02.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>Smallest inverse condition number of the Jacobian while depositing.</source>
-        <translation>Plus petit conditionnement inverse du jacobien pendant le dépôt.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
-        <source>Smallest inverse condition number: {0:.3f}, in layer {2}</source>
-        <translation>Conditionnement inverse minimal : {0:.3f}, couche {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
@@ -5845,6 +5765,11 @@
         <location filename="../../freecad_am/core/inspection/table.py"/>
         <source>Smallest thickness</source>
         <translation>Plus petite épaisseur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Smallest width of beads in planes where neighbours leave less space, as a share of their usual width; 100 %: beads are never narrowed, and layers get higher there.</source>
+        <translation>Plus petite largeur des cordons dans des plans là où les voisins laissent moins de place, en part de leur largeur habituelle ; 100 % : les cordons ne sont jamais rétrécis, et les couches y deviennent plus hautes.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -6145,6 +6070,11 @@
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Take the view direction</source>
         <translation>Prendre la direction de la vue</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
+        <source>Takes the place of the part that you clicked last in the 3D view</source>
+        <translation>Prend l&apos;endroit de la pièce cliqué en dernier dans la vue 3D</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -6813,8 +6743,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/fields.py"/>
-        <source>To the next point where a limit, a singularity or a speed needs attention</source>
-        <translation>Au prochain point où une limite, une singularité ou une vitesse est à regarder</translation>
+        <source>To the next place where a limit, a singularity or a speed needs attention</source>
+        <translation>Au prochain endroit où une limite, une singularité ou une vitesse est à regarder</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
@@ -6932,6 +6862,11 @@
         <translation>Rotation</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Turn of the bead within the wall that smooth layers stay below if the band allows.</source>
+        <translation>Rotation du cordon dans la paroi au-dessous de laquelle restent les couches smooth là où la bande le permet.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Twist about x, deg</source>
         <translation>Torsion autour de x, deg</translation>
@@ -7020,11 +6955,6 @@
         <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>Uses the current selection, or the next click. {}</source>
         <translation>Prend la sélection actuelle, ou le clic suivant. {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
-        <source>Uses the point on the part that you clicked last in the 3D view</source>
-        <translation>Prend le point de la pièce cliqué en dernier dans la vue 3D</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -7193,8 +7123,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Width of contours, and of lines inside contours, in planes: adaptive beads follow the thickness of a region if this covers the region better; fixed ones have the nominal width.</source>
-        <translation>Largeur, dans les plans, des contours et des lignes à l&apos;intérieur de contours : les cordons adaptatifs suivent l&apos;épaisseur d&apos;une région si cela la couvre mieux ; les cordons fixes ont la largeur nominale.</translation>
+        <source>Width of contours, and of lines inside contours, in planes: adaptive beads follow the thickness of a region if this covers the region better; fixed ones have the usual width.</source>
+        <translation>Largeur, dans les plans, des contours et des lignes à l&apos;intérieur de contours : les cordons adaptatifs suivent l&apos;épaisseur d&apos;une région si cela la couvre mieux ; les cordons fixes ont la largeur habituelle.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -7337,11 +7267,6 @@
         <translation>Agrandir un rectangle ; la molette agrandit aussi, avec Ctrl l&apos;axe vertical</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/view.py"/>
-        <source>Zoom to everything; a double click does the same</source>
-        <translation>Zoomer sur tout ; un double-clic fait de même</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
         <source>`max_speed` to its joints</source>
         <translation>`max_speed` à ses articulations</translation>
@@ -7358,28 +7283,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % is too narrow: {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm outside corners, and the robot slows down there; use a wider strategy.band to round the layers</source>
-        <translation>une bande de {0} % est trop étroite : {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm hors des angles, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm elsewhere, and the robot slows down there; use a wider strategy.band to round the layers</source>
+        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm ailleurs, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % is too narrow: {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm, and the robot slows down there; use a wider strategy.band to round the layers</source>
-        <translation>une bande de {0} % est trop étroite : {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm, and the robot slows down there; use a wider strategy.band to round the layers</source>
+        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % is too narrow: {1} of {2} layers turn by more than {3} deg/mm, {4} in corners, first layer {5}, by up to {6} deg/mm outside corners, and the robot slows down there; use a wider strategy.band to round the layers</source>
-        <translation>une bande de {0} % est trop étroite : {1} de {2} couches tournent de plus de {3} deg/mm, {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm hors des angles, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} in corners, first layer {5}, by up to {6} deg/mm elsewhere, and the robot slows down there; use a wider strategy.band to round the layers</source>
+        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm ailleurs, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % is too narrow: {1} of {2} layers turn by more than {3} deg/mm, {4} in corners, first layer {5}, by up to {6} deg/mm, and the robot slows down there; use a wider strategy.band to round the layers</source>
-        <translation>une bande de {0} % est trop étroite : {1} de {2} couches tournent de plus de {3} deg/mm, {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
-        <source>a bead model gives all beads of one width the same height, but layers are {0} to {1} mm high; use bead_model: none, or one strategy.layer_height</source>
-        <translation>un modèle de cordon donne la même hauteur à tous les cordons d&apos;une même largeur, mais les couches ont de {0} à {1} mm de haut ; prenez bead_model: none, ou une seule strategy.layer_height</translation>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} in corners, first layer {5}, by up to {6} deg/mm, and the robot slows down there; use a wider strategy.band to round the layers</source>
+        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/curves.py"/>
@@ -7523,8 +7443,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>a move does not match the type of its recorded position (joint or Cartesian)</source>
-        <translation>un mouvement ne correspond pas au type de sa position enregistrée (articulaire ou cartésienne)</translation>
+        <source>a move does not fit the form in which its position is recorded (joint or Cartesian)</source>
+        <translation>un mouvement ne convient pas à la forme dans laquelle sa position est enregistrée (articulaire ou cartésienne)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -7685,6 +7605,11 @@
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>a second U{0} is selected</source>
         <translation>un deuxième U{0} est choisi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>a second analogue output follows the speed, or an analogue output follows the speed of a joint move or without deposit</source>
+        <translation>une seconde sortie analogique suit la vitesse, ou une sortie analogique suit la vitesse d&apos;un mouvement articulaire ou sans dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
@@ -8052,11 +7977,6 @@
         <translation>plage d&apos;angles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>angles of seams vary by place only for parts of revolution and plane layers; use position: point, sharpest, spread or hidden</source>
-        <translation>l&apos;angle des coutures ne varie selon l&apos;endroit que pour les pièces de révolution et les couches planes ; utilisez position : point, sharpest, spread ou hidden</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>another computation is running; wait for its end, or cancel it</source>
         <translation>un autre calcul est en cours ; attendez sa fin, ou annulez-le</translation>
@@ -8162,16 +8082,6 @@
         <translation>avec les axes d&apos;outil demandés, la buse touche des cordons de {0} points, et la recherche d&apos;inclinaisons qui dégagent la buse prend environ {1} min de processeur, plusieurs fois plus là où l&apos;outil tournerait trop vite ; utilisez un build_direction.lead et un build_direction.tilt plus petits, ou clearance: none, pour éviter la recherche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/model_notes.py"/>
-        <source>at the speed that the axes reach, beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm; set strategy.layer_height to the predicted height{4}</source>
-        <translation>à la vitesse que les axes atteignent, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/model_notes.py"/>
-        <source>at the speed that the axes reach, beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm{4}</source>
-        <translation>à la vitesse que les axes atteignent, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
         <source>at the switching point the tip moves at {0} mm/s, too slowly to program the lead as a distance; set a retract distance, or remove program.trigger.lead</source>
         <translation>au point de commutation la pointe avance à {0} mm/s, trop lentement pour programmer l&apos;avance comme une distance ; fixez une distance de retrait, ou retirez program.trigger.lead</translation>
@@ -8183,8 +8093,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>at {0} of {1} positions in layer {2} the scan has no nearby points, first at {3}; the scan extends over {4} mm, the layer over {5} mm: scan the whole area below the layer, or check unit and fit</source>
-        <translation>à {0} des {1} positions de la couche {2} il n&apos;y a pas de points de la numérisation autour, le premier en {3} ; elle s&apos;étend sur {4} mm, la couche sur {5} mm : numérisez tout ce sur quoi la couche repose, ou vérifiez son unité et son ajustement</translation>
+        <source>at {0} of {1} places in layer {2} the scan has no nearby points, first at {3}; the scan extends over {4} mm, the layer over {5} mm: scan the whole area below the layer, or check unit and fit</source>
+        <translation>à {0} des {1} endroits de la couche {2} il n&apos;y a pas de points de la numérisation autour, le premier en {3} ; elle s&apos;étend sur {4} mm, la couche sur {5} mm : numérisez tout ce sur quoi la couche repose, ou vérifiez son unité et son ajustement</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
@@ -8347,8 +8257,13 @@
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>beads change their schedule on the way, but the controller appears to set outputs before the motion reaches the place; change only the speed at start, end and by place, or use another controller</source>
+        <translation>des cordons changent de programme de soudage en route, mais cette commande semble régler les sorties avant que le mouvement ne les atteigne ; ne changez que la vitesse dans start, end et settings, ou utilisez une autre commande</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/deposit/void_and_double.py"/>
-        <source>beads leave {0} % of the section void, the largest void {1} mm wide at {2}; strategy.max_void allows {3} %; set strategy.widths to adaptive, use fill: contours, narrower beads, or another fill_angle</source>
+        <source>beads leave {0} % of the section void, the largest place {1} mm wide at {2}; strategy.max_void allows {3} %; set strategy.widths to adaptive, use fill: contours, narrower beads, or another fill_angle</source>
         <translation>les cordons laissent {0} % de la section vide, l&apos;endroit le plus large, de {1} mm, en {2} ; strategy.max_void permet {3} % ; mettez strategy.widths à adaptive, prenez fill: contours, des cordons plus étroits ou un autre fill_angle</translation>
     </message>
     <message>
@@ -8447,7 +8362,7 @@
         <translation>arbre booléen</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>both</source>
         <translation>les deux</translation>
     </message>
@@ -8655,6 +8570,11 @@
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>condition</source>
         <translation>condition</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
+        <source>condition {:.4f}, least {:.4f}</source>
+        <translation>condition {:.4f}, minimum {:.4f}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
@@ -8903,7 +8823,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/helix.py"/>
-        <source>each helix starts and ends next to a full turn, where about {0} cm3 in total are deposited twice</source>
+        <source>each helix begins and ends beside a whole turn, where about {0} cm3 are deposited twice in total</source>
         <translation>chaque hélice commence et finit contre un tour complet, où environ {0} cm3 au total sont déposés deux fois</translation>
     </message>
     <message>
@@ -9352,11 +9272,6 @@
         <translation>le conditionnement {0} lors d&apos;un mouvement rapide avant ou après le cordon est inférieur aux {1} admis, et aucune autre hauteur, direction ou rotation n&apos;est plus loin d&apos;une singularité ; diminuez joints.min_condition ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
-        <source>inverse condition number {:.4f}, minimum {:.4f}</source>
-        <translation>conditionnement inverse {:.4f}, minimum {:.4f}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>is a length</source>
         <translation>est une longueur</translation>
@@ -9532,11 +9447,6 @@
         <translation>hauteur de couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>layer heights adapt in plane layers only, not with layers: {0}; use layers: planes, or remove strategy.cusp and give one strategy.layer_height</source>
-        <translation>les hauteurs de couche ne s&apos;adaptent que dans des couches planes, pas avec layers: {0} ; prenez layers: planes, ou retirez strategy.cusp et donnez une seule strategy.layer_height</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/issues.py"/>
         <source>layer {0}</source>
         <translation>couche {0}</translation>
@@ -9603,11 +9513,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>layers of adapted height cannot be fitted to a scan yet; give one strategy.layer_height, or remove the scan</source>
-        <translation>les couches de hauteur adaptée ne peuvent pas encore être ajustées à un relevé ; donnez une seule strategy.layer_height, ou retirez le relevé</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
         <source>layers of the family {0} cannot be fitted to a scan yet, only solids in planar layers and walls on a substrate; remove the scan</source>
         <translation>les couches de la famille {0} ne peuvent pas encore être ajustées à une numérisation, seulement les solides en couches planes et les parois sur un substrat ; retirez la numérisation</translation>
     </message>
@@ -9660,6 +9565,16 @@
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>limited by the axes</source>
         <translation>limité par les axes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
+        <source>limited to the speed of the axes, beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm; set strategy.layer_height to the predicted height{4}</source>
+        <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm ; réglez strategy.layer_height sur ce que font les cordons{4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/model_notes.py"/>
+        <source>limited to the speed of the axes, beads are predicted {0} to {1} mm high, {2} mm on average, for layers of {3} mm{4}</source>
+        <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/chart.py"/>
@@ -10027,6 +9942,11 @@
         <translation>aucune face de {0} ne touche les faces de départ, qui sont à {1} mm ; choisissez des faces de départ en contact, ou effacez-les</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>no file can have the name ({0}); check the path</source>
+        <translation>aucun fichier ne peut avoir ce nom ({0}) ; vérifiez le chemin</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
         <source>no file describes the shape of {0}</source>
         <translation>aucun fichier ne dit de quoi {0} est fait</translation>
@@ -10112,11 +10032,6 @@
         <translation>aucun positionneur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/colouring.py"/>
-        <source>no setting</source>
-        <translation>aucun réglage</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/api.py"/>
         <source>no source</source>
         <translation>pas de source</translation>
@@ -10142,7 +10057,7 @@
         <translation>résultat nodal</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
         <source>none</source>
         <translation>aucun</translation>
     </message>
@@ -10447,11 +10362,6 @@
         <translation>une sortie du programme de soudage commute le dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>one strategy.layer_height</source>
-        <translation>une seule strategy.layer_height</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>only Universal Robots arms have a calibration, not {0}; remove the calibration</source>
         <translation>seuls les bras de Universal Robots ont un étalonnage, pas {0} ; retirez l&apos;étalonnage</translation>
@@ -10470,11 +10380,6 @@
         <location filename="../../freecad_am/core/planning/program_beads.py"/>
         <source>only an output can change the schedule within a bead, because calls stop the machine, and arc instructions may stop it too; use output, or remove the schedules of start, end and settings</source>
         <translation>seule une sortie peut changer le programme de soudage au sein d&apos;un cordon : les appels arrêtent la machine, et les instructions d&apos;arc peuvent l&apos;arrêter aussi ; utilisez output, ou retirez les programmes de start, end et settings</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>only one analogue output may follow the speed, during linear moves with deposit</source>
-        <translation>une seule sortie analogique peut suivre la vitesse, pendant des mouvements linéaires avec dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/pictures.py"/>
@@ -10743,8 +10648,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>process.seam.position: sharpest has no effect: no closed bead turns by {0} deg or more at a point; the beads start at process.seam.angle</source>
-        <translation>process.seam.position : sharpest est sans effet : aucun cordon fermé ne tourne de {0} deg ou plus en un point ; les cordons commencent à process.seam.angle</translation>
+        <source>process.seam.position: sharpest has no effect: no closed bead turns by {0} deg or more at a point; the beads start by process.seam.angle</source>
+        <translation>process.seam.position : sharpest est sans effet : aucun cordon fermé ne tourne de {0} deg ou plus en un point ; les cordons commencent selon process.seam.angle</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
@@ -10753,13 +10658,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>process.start or process.end sets a travel speed that the scarf sets too; remove the scarf, or their travel_speed</source>
-        <translation>process.start ou process.end fixe une vitesse d&apos;avance que le biseau fixe aussi ; supprimez le biseau, ou leur travel_speed</translation>
+        <source>process.seam.{0} has no effect with process.seam.position: {1}; remove the key, or use position: {2}</source>
+        <translation>process.seam.{0} est sans effet avec process.seam.position : {1} ; supprimez-le, ou choisissez position : {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/classes.py"/>
-        <source>process.wire.feed_mode: proportional makes the wire feed follow the travel speed; use constant, or remove the wire feed of the place</source>
-        <translation>process.wire.feed_mode : proportional fait suivre la vitesse d&apos;avance au fil ; utilisez constant, ou retirez le dévidage de l&apos;endroit</translation>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>process.start or process.end sets the travel speed where the scarf does; remove the scarf, or their travel_speed</source>
+        <translation>process.start ou process.end fixe la vitesse d&apos;avance là où le biseau le fait ; supprimez le biseau, ou leur travel_speed</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -10778,33 +10683,33 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} cannot use a positioner; plan without a program, and use the axis values in waypoints.csv</source>
-        <translation>les programmes de {0} ne peuvent pas utiliser un positionneur ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
+        <source>programs of {0} are not written with a positioner; plan without a program, and use the axis values in waypoints.csv</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} cannot use a positioner; use one of {1}</source>
-        <translation>les programmes de {0} ne peuvent pas utiliser un positionneur ; utilisez {1}</translation>
+        <source>programs of {0} are not written with a positioner; use one of {1}</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; utiliser {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} cannot use a track and a positioner together; plan without a program, and use the axis values in waypoints.csv</source>
-        <translation>les programmes de {0} ne peuvent pas utiliser un rail et un positionneur ensemble ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
+        <source>programs of {0} are not written with a track and a positioner together; plan without a program, and use the axis values in waypoints.csv</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} cannot use a track and a positioner together; use one of {1}</source>
-        <translation>les programmes de {0} ne peuvent pas utiliser un rail et un positionneur ensemble ; utilisez {1}</translation>
+        <source>programs of {0} are not written with a track and a positioner together; use one of {1}</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; utiliser {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} cannot use a track; plan without a program, and use the axis values in waypoints.csv</source>
-        <translation>les programmes de {0} ne peuvent pas utiliser un rail ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
+        <source>programs of {0} are not written with a track; plan without a program, and use the axis values in waypoints.csv</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un rail ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} cannot use a track; use one of {1}</source>
-        <translation>les programmes de {0} ne peuvent pas utiliser un rail ; utilisez {1}</translation>
+        <source>programs of {0} are not written with a track; use one of {1}</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un rail ; utiliser {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -10923,8 +10828,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>retracts, travels and approaches simulated again, at {0} positions {1} mm apart, against obstacles, platform and beads with their width and height at that time</source>
-        <translation>retraits, transferts et approches simulés à nouveau, en {0} points distants de {1} mm, contre les corps, le plateau et les cordons avec leur largeur et leur hauteur du moment</translation>
+        <source>retracts, travels and approaches simulated again, at {0} places {1} mm apart, against obstacles, platform and beads with their width and height at that time</source>
+        <translation>retraits, transferts et approches menés à nouveau, en {0} points distants de {1} mm, contre les corps, le plateau et les cordons avec leur largeur et leur hauteur du moment</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/directed.py"/>
@@ -11067,19 +10972,14 @@
         <translation>réglez strategy.layer_height à {0} mm, ou apportez moins de fil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/colouring.py"/>
-        <source>setting</source>
-        <translation>réglage</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/path/colouring.py"/>
-        <source>setting {0}</source>
-        <translation>réglage {0}</translation>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>settings by place are for one feature yet; remove them, or put each feature in its own job</source>
+        <translation>les réglages par lieu ne valent encore que pour un seul élément ; supprimez-les, ou mettez chaque élément dans sa propre tâche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>settings by place that change the travel speed cannot be combined with this setting yet; use strategy.layer_time or process.between_layers.wait</source>
-        <translation>des réglages par lieu qui changent la vitesse d&apos;avance ne peuvent pas encore s&apos;y combiner ; utilisez strategy.layer_time ou process.between_layers.wait</translation>
+        <source>settings by place that change the travel speed cannot be combined with it yet; use strategy.min_layer_time or process.between_layers.wait</source>
+        <translation>des réglages par lieu qui changent la vitesse d&apos;avance ne peuvent pas encore s&apos;y combiner ; utilisez strategy.min_layer_time ou process.between_layers.wait</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/by_place.py"/>
@@ -11098,8 +10998,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/places.py"/>
-        <source>several link groups show the object ({0}), each at its own position; choose one group, or make a link to the object</source>
-        <translation>plusieurs groupes de liens montrent l&apos;objet ({0}), chacun à sa propre position ; choisissez un groupe, ou faites un lien vers l&apos;objet</translation>
+        <source>several link groups show the object ({0}), each in its own place; choose one group, or make a link to the object</source>
+        <translation>plusieurs groupes de liens montrent l&apos;objet ({0}), chacun à sa propre place ; choisissez un groupe, ou faites un lien vers l&apos;objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
@@ -11208,16 +11108,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>slow</source>
-        <translation>lente</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>slowed layers cannot be combined with this setting yet; use process.between_layers.wait or strategy.layer_time.by: wait</source>
-        <translation>des couches ralenties ne peuvent pas encore s&apos;y combiner ; utilisez process.between_layers.wait ou strategy.layer_time.by: wait</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>smooth</source>
         <translation>lisse</translation>
     </message>
@@ -11268,8 +11158,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
-        <source>speed and radius change only together, so their effects cannot be separated</source>
-        <translation>vitesse et rayon ne changent qu&apos;ensemble, donc leurs effets sont inséparables</translation>
+        <source>speeds and radii vary only together</source>
+        <translation>vitesses et rayons ne varient qu&apos;ensemble</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
@@ -11320,11 +11210,6 @@
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>start the machine at the base of the robot, and name the track in `cell.external` with `carries: robot`</source>
         <translation>faites commencer la machine à la base du robot, et nommez le rail dans `cell.external` avec `carries: robot`</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>strategy.layer_time.least, {0} s, and strategy.min_layer_time, {1} s, both give the minimum time of a layer; remove min_layer_time</source>
-        <translation>strategy.layer_time.least, {0} s, et strategy.min_layer_time, {1} s, donnent tous deux la durée minimale d&apos;une couche ; supprimez min_layer_time</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
@@ -11453,8 +11338,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>the arc has {0} or {1}, and also R; use one of these forms</source>
-        <translation>l&apos;arc a {0} ou {1}, et aussi R ; utilisez l&apos;une de ces formes</translation>
+        <source>the arc has both {0} or {1} and R; use one of these forms</source>
+        <translation>l&apos;arc a à la fois {0} ou {1} et R ; utilisez l&apos;une de ces formes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
@@ -11623,11 +11508,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
-        <source>the bead model is for one wire feed; remove the wire feed of the place, or use bead_model: none</source>
-        <translation>le modèle de cordon vaut pour un seul dévidage ; retirez le dévidage de l&apos;endroit, ou utilisez bead_model : none</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/classes.py"/>
         <source>the bead model sets the travel speed of every bead; remove the travel speed, or use bead_model: none</source>
         <translation>le modèle de cordon règle la vitesse d&apos;avance de tous les cordons ; retirez la vitesse d&apos;avance, ou utilisez bead_model: none</translation>
     </message>
@@ -11650,11 +11530,6 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>the bead {0} is listed twice; keep one entry per bead</source>
         <translation>le cordon {0} est dans la liste deux fois ; gardez une entrée par cordon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/guide_field.py"/>
-        <source>the bend of the guide at {0} has a smaller radius than the part is wide: planes normal to the guide intersect in the part, at {1}; choose a guide nearer to the inside of the bend or with a larger radius, or strategy.layers: geodesic</source>
-        <translation>le rayon du guide en {0} est plus petit que la largeur de la pièce : les plans normaux au guide se croisent dans la pièce, en {1} ; choisissez un guide plus près de l&apos;intérieur du coude ou de plus grand rayon, ou strategy.layers: geodesic</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
@@ -11892,14 +11767,14 @@
         <translation>le dépôt</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
+        <source>the deposit is slowed at {0} short places, {1} mm in total, here to {2} mm/s, the limit of the axes; over-deposition is up to {3} mm of bead{4}</source>
+        <translation>le dépôt est ralenti à {0} endroits courts, {1} mm en tout, ici à {2} mm/s, la limite des axes ; le surdépôt atteint {3} mm de cordon{4}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/linear_approach.py"/>
         <source>the deposit needs a linear approach to the bead, but the program begins at the bead; set a retract distance, or another {0}</source>
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
-        <source>the deposit slows down on {0} short sections, {1} mm in total, here to {2} mm/s, the limit of the axes; over-deposition is up to {3} mm of bead{4}</source>
-        <translation>le dépôt ralentit sur {0} tronçons courts, {1} mm en tout, ici à {2} mm/s, la limite des axes ; le surdépôt atteint {3} mm de cordon{4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/dock_area.py"/>
@@ -11972,6 +11847,11 @@
         <translation>les axes externes du mouvement diffèrent des mouvements précédents, ou ont des lacunes entre eux</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>the face closes on itself both ways; choose a tube that is closed around</source>
+        <translation>la face se ferme sur elle-même dans les deux sens ; choisissez un tube fermé sur son tour</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>the face does not turn about the axis</source>
         <translation>la face ne tourne pas autour de l&apos;axe</translation>
@@ -11998,13 +11878,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>the face has no closed direction; choose a tube that is closed in one direction</source>
-        <translation>la face n&apos;a pas de direction fermée ; choisissez un tube fermé dans une direction</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>the face is closed in both directions; choose a tube that is closed in one direction</source>
-        <translation>la face est fermée dans les deux directions ; choisissez un tube fermé dans une seule direction</translation>
+        <source>the face has no closed direction; choose a tube that is closed around</source>
+        <translation>la face n&apos;a pas de direction fermée ; choisissez un tube fermé sur son tour</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
@@ -12547,6 +12422,11 @@
         <translation>le groupe des instructions diffère du groupe des positions</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/guide_field.py"/>
+        <source>the guide bends more tightly at {0} than the part is wide there: planes normal to it intersect within the part, at {1}; choose a guide nearer to the inside of the bend or with a larger radius, or strategy.layers: geodesic</source>
+        <translation>le guide est plus courbé en {0} que la pièce n&apos;y est étroite : ses plans normaux se croisent dans la pièce, en {1} ; choisissez un guide plus près de l&apos;intérieur du coude ou de plus grand rayon, ou strategy.layers: geodesic</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>the guide has a corner of {0} deg at {1}, where layers would have zero height on the inside; round the corner with a radius, or choose guide: auto</source>
         <translation>le guide a un angle vif de {0} deg en {1}, où les couches n&apos;auraient pas de hauteur à l&apos;intérieur ; arrondissez l&apos;angle par un rayon, ou choisissez guide: auto</translation>
@@ -12668,7 +12548,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the joint {0} mimics another joint, which a serial chain cannot do; remove the mimic tag</source>
+        <source>the joint {0} mimics another joint, which a serial chain cannot; remove the mimic tag</source>
         <translation>l&apos;articulation {0} en suit une autre, ce qu&apos;une chaîne en série ne peut pas</translation>
     </message>
     <message>
@@ -12728,7 +12608,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/infill_dock.py"/>
-        <source>the largest {:.2g} mm wide, at {}</source>
+        <source>the largest place {:.2g} mm wide at {}</source>
         <translation>l&apos;endroit le plus large, de {:.2g} mm, en {}</translation>
     </message>
     <message>
@@ -12750,16 +12630,6 @@
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
         <source>the layer is predicted to end {0} mm below the start of the next layer: up to here layers are {1} mm high on average instead of {2} mm; set strategy.layer_height to {3} mm, or change the wire feed</source>
         <translation>d&apos;après la prédiction, la couche finit {0} mm au-dessous du début de la couche suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut au lieu de {2} mm ; fixez strategy.layer_height à {3} mm, ou changez l&apos;avance du fil</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>the least height, {0} mm, is above the most, {1} mm; give the smaller height as least</source>
-        <translation>la hauteur minimale, {0} mm, dépasse la maximale, {1} mm ; donnez la plus petite comme minimum</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/plane_field.py"/>
-        <source>the least height, {0} mm, is too high for {1}, {2} mm high along strategy.direction: no layer is cut in its {3}; use at most {4} mm</source>
-        <translation>la hauteur minimale, {0} mm, est trop grande pour {1}, haut de {2} mm selon strategy.direction : aucune couche n&apos;est coupée en son {3} ; prenez au plus {4} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
@@ -12912,11 +12782,6 @@
         <translation>la machine stocke les lignes suivantes sans les exécuter ; retirez la commande et son M29</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
-        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in total, because the layers below cannot be slowed below {4} mm/s</source>
-        <translation>la machine attend avant {0} des {1} couches, jusqu&apos;à {2} s et {3} s en tout, car les couches d&apos;en dessous ne peuvent pas être ralenties sous {4} mm/s</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
         <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in total, so that at least {4} s pass between two layers of a solid</source>
         <translation>la machine attend avant {0} de {1} couches, jusqu&apos;à {2} s et {3} s en tout, afin qu&apos;au moins {4} s passent entre deux couches d&apos;un solide</translation>
@@ -12988,8 +12853,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
-        <source>the mesh has no consistent inside, for instance at {0}; model the solid again</source>
-        <translation>le maillage n&apos;a pas d&apos;intérieur, par exemple en {0} ; modélisez le solide de nouveau</translation>
+        <source>the mesh has no consistent inside, as at {0}; model the solid again</source>
+        <translation>le maillage n&apos;a pas d&apos;intérieur, comme en {0} ; modélisez le solide de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
@@ -13352,11 +13217,6 @@
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
-        <source>the part consists of several solids</source>
-        <translation>la pièce est faite de plusieurs solides</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
         <source>the part extends to {0} mm, beyond the limit of {1} mm, so a coordinate is damaged or the unit is wrong; export the part again</source>
         <translation>la pièce s&apos;étend jusqu&apos;à {0} mm, au-delà de la limite de {1} mm, donc une coordonnée est endommagée ou l&apos;unité est fausse ; exportez la pièce de nouveau</translation>
@@ -13380,6 +13240,11 @@
         <location filename="../../freecad_am/objects/families/revolution.py"/>
         <source>the part is a solid of revolution, but a wall of one bead would leave out {0} of its {1} cm3</source>
         <translation>la pièce est un solide de révolution, mais une paroi d&apos;un cordon laisserait de côté {0} de ses {1} cm3</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>the part is several solids</source>
+        <translation>la pièce est faite de plusieurs solides</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
@@ -13518,7 +13383,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/helix.py"/>
-        <source>the profile of the faces does not run from rim to rim</source>
+        <source>the profile of the faces does not lead from rim to rim</source>
         <translation>le profil des faces ne mène pas d’un bord à l’autre</translation>
     </message>
     <message>
@@ -13675,11 +13540,6 @@
         <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>the program moves without setting a feed</source>
         <translation>le programme fait un mouvement sans régler d&apos;avance</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the program moves {0} from axis {1} on, but the plan moves {2} from axis {3} on</source>
-        <translation>le programme déplace {0} à partir de l&apos;axe {1}, mais le plan {2} à partir de l&apos;axe {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
@@ -13897,11 +13757,6 @@
         <translation>la numérisation est à {0} mm de la couche {1} en {2}, plus que substrate.scan_within = {3} mm ; vérifiez qu&apos;elle montre la bonne pièce, dans la bonne unité et à la bonne place</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the schedule changes within beads, but the controller appears to set outputs before the motion reaches the point; change only the speed at start, end and by place, or use another controller</source>
-        <translation>le programme de soudage change dans des cordons, mais cette commande semble régler les sorties avant que le mouvement ne les atteigne ; ne changez que la vitesse dans start, end et settings, ou utilisez une autre commande</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>the schedule in the program differs from the plan</source>
         <translation>le programme de soudage transmis diffère de la planification</translation>
@@ -13910,11 +13765,6 @@
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>the schedule is set ahead of the motion, or has too few outputs for the number</source>
         <translation>le programme de soudage est réglé en avance sur le mouvement, ou a trop peu de sorties pour le numéro</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>the seam of settings[{0}] has no effect, because no closed bead has at least half of its length in its place; enlarge the place, or remove the seam</source>
-        <translation>la couture de settings[{0}] est sans effet, car aucun cordon fermé n&apos;a au moins la moitié de sa longueur à cet endroit ; agrandissez l&apos;endroit, ou supprimez la couture</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
@@ -14038,8 +13888,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>the slicer assigns two roles to triangle {0} of {1}</source>
-        <translation>le trancheur donne deux rôles au triangle {0} de {1}</translation>
+        <source>the slicer&apos;s roles name triangle {0} of {1} twice</source>
+        <translation>les rôles du trancheur nomment deux fois le triangle {0} de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -14048,8 +13898,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>the solid and {0} overlap, for instance at {1}, and the overlap would be deposited twice; fuse the two solids, or move one of them</source>
-        <translation>le solide et {0} se recouvrent, par exemple en {1}, et le recouvrement serait déposé deux fois ; fusionnez les deux solides, ou déplacez l&apos;un d&apos;eux</translation>
+        <source>the solid and {0} overlap, as at {1}, and the overlap would be deposited twice; fuse the two solids, or move one of them</source>
+        <translation>le solide et {0} se recouvrent, comme en {1}, et le recouvrement serait déposé deux fois ; fusionnez les deux solides, ou déplacez l&apos;un d&apos;eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/sheet.py"/>
@@ -14060,6 +13910,11 @@
         <location filename="../../freecad_am/core/layers/rotary_field.py"/>
         <source>the solid crosses the hub axis beyond its end, at {0}, where equidistant surfaces have an apex or an end; end the solid before the axis</source>
         <translation>le solide passe l&apos;axe du moyeu au-delà de son bout, en {0}, où les surfaces équidistantes ont un sommet ou un bout ; terminez le solide avant l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>the solid ends after one section</source>
+        <translation>le solide finit après une section</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
@@ -14080,11 +13935,6 @@
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>the solid is inside out; repair it (Part, Check geometry)</source>
         <translation>le solide est retourné ; réparez-le (Part, Vérifier la géométrie)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
-        <source>the solid is too short for three sections</source>
-        <translation>le solide est trop court pour trois sections</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -14170,6 +14020,11 @@
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>the temperature in the program differs from the plan</source>
         <translation>la température dans le programme diffère de la planification</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
+        <source>the text moves {0} from axis {1} on, but the plan moves {2} from axis {3} on</source>
+        <translation>le texte déplace {0} à partir de l&apos;axe {1}, mais le plan {2} à partir de l&apos;axe {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/interpolation.py"/>
@@ -14532,11 +14387,6 @@
         <translation>l&apos;atelier {0} n&apos;est pas installé dans ce FreeCAD ; installez l&apos;atelier, ou {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>there are {0} entries; use at most {1}, for instance wider ranges of layers</source>
-        <translation>il y a {0} entrées ; utilisez-en au plus {1}, par exemple de plus larges plages de couches</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/program.py"/>
         <source>there is no bead {0} in a layer {1}; choose from layers 0 to {2}</source>
         <translation>il n&apos;y a pas de cordon {0} dans une couche {1} ; choisissez parmi les couches 0 à {2}</translation>
@@ -14548,8 +14398,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>there is no layer above {0}: the last of {1} layers is {2}; give a lower layer</source>
-        <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière des {1} couches est {2} ; donnez une couche plus basse</translation>
+        <source>there is no layer above {0}: the last layer of {1} is {2}; give a lower layer</source>
+        <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière couche de {1} est {2} ; donnez une couche plus basse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
@@ -14580,11 +14430,6 @@
         <location filename="../../freecad_am/gui/widgets/quantity.py"/>
         <source>this field takes no expression, give a quantity in {0}</source>
         <translation>ce champ n’accepte pas d’expression, donnez une grandeur en {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
-        <source>this is not a valid file name ({0}); check the path</source>
-        <translation>ce n&apos;est pas un nom de fichier valide ({0}) ; vérifiez le chemin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -14625,6 +14470,11 @@
         <location filename="../../freecad_am/read_back/selected.py"/>
         <source>tool</source>
         <translation>outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
+        <source>tool axes are spread along the bead, by up to {0} deg, to turn no faster than build_direction.max_turn</source>
+        <translation>les axes de l&apos;outil sont étalés le long du cordon, jusqu&apos;à {0} deg, pour ne pas tourner plus vite que build_direction.max_turn</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
@@ -14720,11 +14570,6 @@
         <location filename="../../freecad_am/core/parameters/field.py"/>
         <source>turn rate</source>
         <translation>rotation par longueur</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>turns of the tool axis are spread along the bead, deviating by up to {0} deg, to turn no faster than build_direction.max_turn</source>
-        <translation>les rotations de l&apos;axe de l&apos;outil sont étalées le long du cordon, avec un écart jusqu&apos;à {0} deg, pour ne pas tourner plus vite que build_direction.max_turn</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
@@ -14888,7 +14733,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>volume of the cubes, compared with wire section x feed x time, or with the nominal volume of the beads if no wire is set</source>
+        <source>volume of the cubes against wire section x feed x time, or against the nominal volume of the beads if no wire is set</source>
         <translation>volume des cubes comparé à section du fil x vitesse x temps, ou au volume nominal des cordons si aucun fil n&apos;est réglé</translation>
     </message>
     <message>
@@ -14905,11 +14750,6 @@
         <location filename="../../freecad_am/core/process/model_notes.py"/>
         <source>w = {0} v^(-1/3) + {1} / r + {2} with R2 = {3} and RMSE = {4} mm; a width of {5} mm takes travel speeds of {6} to {7} mm/min</source>
         <translation>w = {0} v^(-1/3) + {1} / r + {2} avec R2 = {3} et RMSE = {4} mm ; une largeur de {5} mm demande des vitesses d&apos;avance de {6} à {7} mm/min</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>wait</source>
-        <translation>attente</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -15028,13 +14868,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/placement/place.py"/>
-        <source>with {0} the placement cannot move {1}; use {2}</source>
-        <translation>avec {0} le placement ne peut pas déplacer {1} ; utilisez {2}</translation>
+        <source>with {0} the part is not placed by {1}; use {2}</source>
+        <translation>avec {0} la pièce n&apos;est pas placée par {1} ; utilisez {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/remedies.py"/>
-        <source>with {0} the {1} affected layers are feasible when planned again; the whole job was not tested</source>
-        <translation>avec {0}, les {1} couches en cause sont faisables une fois replanifiées ; le travail entier n’a pas été essayé</translation>
+        <source>with {0} the {1} affected layers planned again are feasible; the whole job was not tested</source>
+        <translation>avec {0}, les {1} couches en cause replanifiées sont faisables ; le travail entier n’a pas été essayé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
@@ -15043,8 +14883,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>without a bead model, a ramp or slowed layers the travel speed is constant, and a proportional wire feed has no effect; use constant, a process.bead_model, process.start.ramp, process.end.ramp or strategy.layer_time.by: slow</source>
-        <translation>sans modèle de cordon, rampe ni couches ralenties, la vitesse d&apos;avance est constante et une vitesse de fil proportionnelle est sans effet ; utilisez constant, un process.bead_model, process.start.ramp, process.end.ramp ou strategy.layer_time.by: slow</translation>
+        <source>without a bead model or a ramp the travel speed is constant, and a proportional wire feed has no effect; use constant, a process.bead_model, or process.start.ramp or process.end.ramp</source>
+        <translation>sans modèle de cordon ni rampe, la vitesse d&apos;avance est constante, et une avance de fil proportionnelle est sans effet ; utilisez constant, un process.bead_model, ou process.start.ramp ou process.end.ramp</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
@@ -15067,6 +14907,11 @@
         <translation>écrivez les décimales avec &apos;{0}&apos;, comme 1{1}5 {2}, et ne groupez pas les chiffres</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>write it as in: layers 0 to 4: travel_speed 4, schedule 3; height 20 to 35 and inside Zone: lead_on 0.5; box 0 0 0 10 20 30: weave 2; faces Face7 Face8 within 8: travel_speed 5</source>
+        <translation>écrivez-le comme dans : layers 0 to 4 : travel_speed 4, schedule 3 ; height 20 to 35 and inside Zone : lead_on 0.5 ; box 0 0 0 10 20 30 : weave 2 ; faces Face7 Face8 within 8 : travel_speed 5</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>write, for example: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5</source>
         <translation>écrivez par exemple : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5</translation>
@@ -15075,11 +14920,6 @@
         <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
         <source>write, for example: contour: travel_speed 8, schedule 3; fill: lead 5</source>
         <translation>écrivez par exemple `contour: travel_speed 8, schedule 3; fill: lead 5`</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>write, for example: layers 0 to 4: travel_speed 4, schedule 3; height 20 to 35 and inside Zone: lead_on 0.5; box 0 0 0 10 20 30: weave 2; faces Face7 Face8 within 8: travel_speed 5</source>
-        <translation>écrivez, par exemple : layers 0 to 4 : travel_speed 4, schedule 3 ; height 20 to 35 and inside Zone : lead_on 0.5 ; box 0 0 0 10 20 30 : weave 2 ; faces Face7 Face8 within 8 : travel_speed 5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
@@ -15140,6 +14980,11 @@
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} a flange pose that deviates by {1} mm and {2} (largest entry of the rotation); correct the geometry or the pose</source>
         <translation>{0} une bride à {1} mm et {2} (plus grand terme de la rotation) de celle-ci ; corrigez la géométrie ou la pose</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>{0} all have a wall; select the faces of one wall</source>
+        <translation>{0} ont tous une paroi ; sélectionnez les faces d&apos;une seule paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -15223,8 +15068,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>{0} applications were given, but exactly one with its parts is needed</source>
-        <translation>{0} applications ont été données, mais il en faut exactement une avec ses parties</translation>
+        <source>{0} applications, but exactly one with its parts is needed</source>
+        <translation>{0} applications, mais il en faut exactement une avec ses parties</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
@@ -15363,17 +15208,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>{0} closed bead(s) are normal to process.seam.away_from, so they have no hidden side and start at process.seam.angle; choose a direction along the layers</source>
-        <translation>{0} cordon(s) fermé(s) sont dans un plan perpendiculaire à process.seam.away_from : aucun de leurs côtés n&apos;est caché, et ils commencent à process.seam.angle ; choisissez une direction le long des couches</translation>
+        <source>{0} closed bead(s) are in a plane across process.seam.away_from without a hidden side, and start by process.seam.angle; choose a direction along the layers</source>
+        <translation>{0} cordon(s) fermé(s) sont dans un plan perpendiculaire à process.seam.away_from : aucun de leurs côtés n&apos;est caché, et ils commencent selon process.seam.angle ; choisissez une direction le long des couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>{0} closed bead(s) in {1} layer(s) are shorter than two scarfs of {2} mm, so they have no scarf; use a shorter process.seam.scarf</source>
+        <source>{0} closed bead(s) in {1} layer(s) are shorter than two scarfs of {2} mm and have none; use a shorter process.seam.scarf</source>
         <translation>{0} cordon(s) fermé(s) dans {1} couche(s) sont plus courts que deux biseaux de {2} mm et n&apos;en ont pas ; choisissez un process.seam.scarf plus court</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>{0} closed bead(s) in {1} layer(s) start less than process.seam.distance, {2} mm, from another start, at worst {3} mm in layer {4}; use a smaller distance</source>
+        <source>{0} closed bead(s) in {1} layer(s) start nearer than process.seam.distance, {2} mm, to another start, at worst {3} mm in layer {4}; use a smaller distance</source>
         <translation>{0} cordon(s) fermé(s) dans {1} couche(s) commencent à moins de process.seam.distance, {2} mm, d&apos;un autre début, au pire à {3} mm dans la couche {4} ; choisissez une distance plus petite</translation>
     </message>
     <message>
@@ -15415,11 +15260,6 @@
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
         <source>{0} degenerate triangles were removed</source>
         <translation>{0} triangles sans surface ont été écartés</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} depends on {1}; choose another object</source>
-        <translation>{0} dépend de {1} ; choisissez un autre objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
@@ -15472,19 +15312,19 @@
         <translation>{0} triangles présents en double ont été écartés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>{0} each have a wall; select the faces of one wall</source>
-        <translation>{0} ont chacun une paroi ; sélectionnez les faces d&apos;une seule paroi</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/slicing/solids/equidistant.py"/>
         <source>{0} edges do not have two faces, for instance at ({1}, {2}, {3}) mm from the hub base; close the mesh</source>
         <translation>{0} arêtes n&apos;ont pas deux faces, par exemple à ({1}, {2}, {3}) mm de la base du moyeu ; fermez le maillage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>{0} edges of more than two triangles were split, for instance at {1}</source>
+        <source>{0} edges of more than two triangles were split, as at {1}</source>
         <translation>{0} arêtes de plus de deux triangles ont été dédoublées, par exemple en {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>{0} entries are too many; use at most {1}, for instance wider ranges of layers</source>
+        <translation>{0} entrées sont trop nombreuses ; utilisez-en au plus {1}, par exemple de plus larges plages de couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
@@ -15493,13 +15333,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>{0} excludes 100 %, the nominal width; extend the range to include 100 %</source>
-        <translation>{0} exclut 100 %, la largeur nominale ; étendez la plage pour inclure 100 %</translation>
+        <source>{0} excludes 100 %, the usual width; extend the range to include 100 %</source>
+        <translation>{0} exclut 100 %, la largeur habituelle ; étendez la plage pour inclure 100 %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/collisions.py"/>
-        <source>{0} extends into the platform, a plate of {1} mm diameter below the origin of the platform frame; set cell.platform to the real clamping position and cell.platform_diameter to the real size (0 for none)</source>
-        <translation>{0} entre dans le plateau, une plaque de {1} mm de diamètre sous l&apos;origine du repère posé dessus ; fixez cell.platform là où la pièce est tenue et cell.platform_diameter selon ce qui existe (0 pour aucun)</translation>
+        <source>{0} extends into the platform, a plate {1} mm below the origin of the platform frame; set cell.platform to the real clamping position and cell.platform_diameter to the real size (0 for none)</source>
+        <translation>{0} entre dans le plateau, une plaque de {1} mm sous l&apos;origine du repère posé dessus ; fixez cell.platform là où la pièce est tenue et cell.platform_diameter selon ce qui existe (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
@@ -15523,8 +15363,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>{0} files were given, but exactly one script is needed</source>
-        <translation>{0} fichiers ont été donnés, mais il faut exactement un script</translation>
+        <source>{0} files, but exactly one script is needed</source>
+        <translation>{0} fichiers, mais il faut exactement un script</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/issues.py"/>
@@ -15592,6 +15432,11 @@
         <translation>{0} a une virgule ; écrivez les décimales avec un point, comme {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/settings.py"/>
+        <source>{0} has a condition twice; give it once</source>
+        <translation>{0} a une condition deux fois ; donnez-la une fois</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
         <source>{0} has a decimal comma; use a decimal point</source>
         <translation>{0} a une virgule décimale ; écrivez les nombres avec un point</translation>
@@ -15635,11 +15480,6 @@
         <location filename="../../freecad_am/brep/walls/sheet.py"/>
         <source>{0} has no consistent side, like a twisted band; divide the band, or remove one of its faces</source>
         <translation>{0} ne peuvent pas être tournées d&apos;un même côté (une bande vrillée n&apos;a pas d&apos;extérieur) ; divisez la bande, ou laissez une de ses faces de côté</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>{0} has no effect on layers without a minimum time; set strategy.layer_time.least</source>
-        <translation>{0} est sans effet sur des couches sans durée minimale ; donnez strategy.layer_time.least</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
@@ -15748,7 +15588,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
-        <source>{0} intersecting triangles were removed, for instance at {1}, leaving holes up to {2} mm across</source>
+        <source>{0} intersecting triangles were removed, as at {1}, leaving holes up to {2} mm across</source>
         <translation>{0} triangles qui se croisent ont été retirés, par exemple en {1}, ce qui a laissé des trous larges de {2} mm au plus</translation>
     </message>
     <message>
@@ -15858,7 +15698,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0} is an open mesh that intersects itself at {1} pairs of triangles, for instance at {2}, so a wall of one bead is impossible; the mesh is filled, with its {3} holes of up to {4} mm closed</source>
+        <source>{0} is an open mesh that intersects itself at {1} pairs of triangles, as at {2}, so a wall of one bead is impossible; the mesh is filled, with its {3} holes of up to {4} mm closed</source>
         <translation>{0} est un maillage ouvert qui se coupe lui-même en {1} paires de triangles, par exemple en {2}, donc une paroi d&apos;un cordon est impossible ; le maillage est rempli, ses {3} trous jusqu&apos;à {4} mm étant fermés</translation>
     </message>
     <message>
@@ -15950,6 +15790,11 @@
         <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>{0} is loaded during the deposit or is missing, or {1} is not a library</source>
         <translation>{0} est chargé pendant le dépôt ou manque, ou {1} n&apos;est pas une bibliothèque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>{0} is made from {1} itself; choose another object</source>
+        <translation>{0} est lui-même fait à partir de {1} ; choisissez un autre objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
@@ -16557,11 +16402,6 @@
         <translation>{0} couche(s) de {1} ne reçoivent pas de cordon, car toutes leurs régions sont trop étroites : {2} ; la plus grande, de {3} mm^2 et {4} mm de large, est en {5} ; le total est de {6} mm^2 ; utilisez des cordons plus étroits, baissez strategy.narrowest, ou épaississez la pièce là</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
-        <source>{0} layers are {1} to {2} mm high, with steps of at most {3} mm normal to the surface; {4} layers of {5} mm would have the same steps, and would take {6} min to deposit instead of {7} min</source>
-        <translation>{0} couches ont de {1} à {2} mm de haut, avec des marches d&apos;au plus {3} mm normalement à la surface ; {4} couches de {5} mm auraient les mêmes marches, et se déposeraient en {6} min au lieu de {7} min</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>{0} leave more than one opening around the axis; choose a single face</source>
         <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez une seule face</translation>
@@ -16588,8 +16428,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>{0} main programs were given, but exactly one with its parts is needed</source>
-        <translation>{0} programmes principaux ont été donnés, mais il en faut exactement un avec ses parties</translation>
+        <source>{0} main programs, but exactly one with its parts is needed</source>
+        <translation>{0} programmes principaux, mais il en faut exactement un avec ses parties</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
@@ -16647,11 +16487,6 @@
         <translation>{0} mm font environ {1} points, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/plane_field.py"/>
-        <source>{0} mm is exceeded in {1} of {2} layers: layer {3}, {4} mm high, has a step of {5} mm normal to the surface at {6}; set strategy.cusp to {7} mm, or the least strategy.layer_height to {8} mm</source>
-        <translation>{0} mm est dépassé dans {1} couches sur {2} : la couche {3}, haute de {4} mm, a une marche de {5} mm normalement à la surface en {6} ; mettez strategy.cusp à {7} mm, ou le minimum de strategy.layer_height à {8} mm</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
         <source>{0} mm is not a unit; give the length of one unit of the file, such as 25.4 mm</source>
         <translation>{0} mm n&apos;est pas une unité ; donnez la longueur d&apos;une unité du fichier, comme 25.4 mm</translation>
@@ -16672,19 +16507,9 @@
         <translation>{0} mm, c&apos;est trop pour {1}, long de {2} mm le long du guide : aucune couche n&apos;est coupée en son {3} ; donnez au plus {4} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>{0} mm needs layers of several heights; give least and most of strategy.layer_height</source>
-        <translation>{0} mm demande des couches de plusieurs hauteurs ; donnez le minimum et le maximum de strategy.layer_height</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/process/deposit/support.py"/>
         <source>{0} mm of bead are unsupported, and the longest run, from here, is {1} mm: the surface below is more than {2} mm away, or beads overhang by more than half their width; deposit the support first, change the growth direction, or remove these beads</source>
         <translation>{0} mm de cordon ne sont pas portés, et le plus long morceau, à partir d&apos;ici, est de {1} mm : la surface dessous est à plus de {2} mm, ou les cordons dépassent de plus de la moitié de leur largeur ; déposez d&apos;abord le support, changez la direction de croissance, ou retirez ces cordons</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>{0} mm of margin needs layers of one height; use 0 mm, or one strategy.layer_height</source>
-        <translation>une surépaisseur de {0} mm demande des couches d&apos;une seule hauteur ; prenez 0 mm, ou une seule strategy.layer_height</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/support.py"/>
@@ -16733,13 +16558,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
-        <source>{0} mm/s exceeds the maximum speed, {1} mm/s; give a slower speed</source>
-        <translation>{0} mm/s dépasse la vitesse maximale, {1} mm/s ; donnez une vitesse plus lente</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
-        <source>{0} mm/s is above the usual travel speed, {1} mm/s; give a slower speed</source>
-        <translation>{0} mm/s dépasse la vitesse d&apos;avance habituelle, {1} mm/s ; donnez une vitesse plus lente</translation>
+        <source>{0} mm/s is above the fastest speed, {1} mm/s; give a slower speed</source>
+        <translation>{0} mm/s est au-dessus de la vitesse la plus rapide, {1} mm/s ; donnez une vitesse plus lente</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
@@ -16758,8 +16578,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/surface.py"/>
-        <source>{0} mm^2 overhang the layer below by more than {1} deg, the largest region at {2}; deposit a support first, choose another strategy.direction, or raise strategy.max_overhang</source>
-        <translation>{0} mm^2 surplombent la couche du dessous de plus de {1} deg, la plus grande région en {2} ; déposez d&apos;abord ce qui le porte, choisissez une autre strategy.direction, ou augmentez strategy.max_overhang</translation>
+        <source>{0} mm^2 overhang the layer below by more than {1} deg, the largest piece at {2}; deposit a support first, choose another strategy.direction, or raise strategy.max_overhang</source>
+        <translation>{0} mm^2 surplombent la couche du dessous de plus de {1} deg, le plus grand morceau en {2} ; déposez d&apos;abord ce qui le porte, choisissez une autre strategy.direction, ou augmentez strategy.max_overhang</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
@@ -16840,16 +16660,6 @@
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
         <source>{0} needs a machine that is the URDF of the whole cell, such as machine: bay.urdf; otherwise give a list of mechanisms</source>
         <translation>{0} est pour une machine qui est l&apos;URDF de toute la cellule, comme machine: bay.urdf ; ou donnez une liste de mécanismes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
-        <source>{0} needs a slowest travel speed; give strategy.layer_time.slowest or process.material.slowest</source>
-        <translation>{0} demande une vitesse d&apos;avance minimale ; donnez strategy.layer_time.slowest ou process.material.slowest</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
-        <source>{0} needs a wire feed that follows the travel speed, but process.wire.feed is 0; give the wire feed, or use strategy.layer_time.by: wait</source>
-        <translation>{0} demande une vitesse de fil qui suit la vitesse d&apos;avance, mais process.wire.feed vaut 0 ; donnez la vitesse de fil, ou utilisez strategy.layer_time.by: wait</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
@@ -16967,24 +16777,14 @@
         <translation>{0} de {1} est {2} de {3} ; choisissez-la sur l&apos;objet d&apos;origine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
-        <source>{0} of {1} layers are slowed, to {2} % of their speed and {3} mm/s at the least, for a minimum time of {4} s; the wire feed follows</source>
-        <translation>{0} des {1} couches sont ralenties, jusqu&apos;à {2} % de leur vitesse et {3} mm/s au minimum, pour une durée minimale de {4} s ; la vitesse de fil suit</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
         <source>{0} of {1} layers deviate by more than 20 % from the layer height of {2} mm, the first of them layer {3}; layer {4} is {5} mm above the previous layer; for even layers use spacing: arc-length</source>
         <translation>{0} de {1} couches s&apos;écartent de plus de 20 % de la hauteur de couche de {2} mm, la première étant la couche {3} ; la couche {4} est à {5} mm au-dessus de la précédente ; pour des couches égales utilisez spacing: arc-length</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/guide_field.py"/>
-        <source>{0} of {1} layers deviate from the layer height: layer {2} is {3} to {4} mm high, with the largest deviation from {5} mm at {6}; strategy.band allows {7} %, but {8} % is needed; raise strategy.band, or choose a guide in the middle of the part or with a gentler bend</source>
-        <translation>{0} couches sur {1} s&apos;écartent de la hauteur de couche : la couche {2} a {3} à {4} mm de haut, avec le plus grand écart aux {5} mm en {6} ; strategy.band permet {7} %, mais il faut {8} % ; augmentez strategy.band, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
-        <source>{0} of {1} layers take up to {2} s less than strategy.layer_time.least, {3} s, because they cannot be slowed below {4} mm/s; use strategy.layer_time.by: both to wait for the rest</source>
-        <translation>{0} des {1} couches durent jusqu&apos;à {2} s de moins que strategy.layer_time.least, {3} s, car elles ne peuvent pas être ralenties sous {4} mm/s ; utilisez strategy.layer_time.by: both pour attendre le reste</translation>
+        <source>{0} of {1} layers deviate from the layer height: layer {2} is {3} to {4} mm high, farthest off the {5} mm at {6}; strategy.band allows {7} %, but {8} % is needed; raise strategy.band, or choose a guide in the middle of the part or with a gentler bend</source>
+        <translation>{0} couches sur {1} s&apos;écartent de la hauteur de couche : la couche {2} a {3} à {4} mm de haut, le plus loin des {5} mm en {6} ; strategy.band permet {7} %, mais il faut {8} % ; augmentez strategy.band, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
@@ -17033,18 +16833,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
-        <source>{0} pairs of points are not enough; give at least three</source>
+        <source>{0} pairs of points are too few; give at least three pairs</source>
         <translation>{0} paires de points ne suffisent pas ; donnez au moins trois paires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>{0} pairs of triangles intersect, for instance at {1}; the union of the enclosed volumes counts as inside</source>
-        <translation>{0} paires de triangles se coupent, par exemple en {1} ; la réunion des volumes enclos compte comme l&apos;intérieur</translation>
+        <source>{0} pairs of triangles intersect, as at {1}; the union of the enclosed volumes counts as inside</source>
+        <translation>{0} paires de triangles se coupent, comme en {1} ; la réunion des volumes enclos compte comme l&apos;intérieur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>{0} pieces that enclose no volume were removed</source>
         <translation>{0} morceaux qui n&apos;enferment rien ont été écartés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>{0} place(s) are too narrow for a bead, {1} mm^2 in total; the largest, {2} mm^2 and {3} mm wide, is at {4}; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
+        <translation>{0} endroit(s) trop étroits pour un cordon n&apos;en reçoivent pas, {1} mm^2 en tout ; le plus grand, {2} mm^2 et {3} mm de large, est en {4} ; utilisez des cordons plus étroits, baissez strategy.narrowest ou épaississez la pièce à cet endroit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -17108,18 +16913,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>{0} region(s) are too narrow for a bead, {1} mm^2 in total; the largest, {2} mm^2 and {3} mm wide, is at {4}; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
-        <translation>{0} région(s) trop étroites pour un cordon n&apos;en reçoivent pas, {1} mm^2 en tout ; la plus grande, {2} mm^2 et {3} mm de large, est en {4} ; utilisez des cordons plus étroits, baissez strategy.narrowest ou épaississez la pièce à cet endroit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
         <source>{0} region(s) have no line of the fill: strategy.fill_density of {1} % is too low for their size; the largest, {2} mm^2, is at {3}; use a higher fill_density, or another fill_angle</source>
         <translation>{0} région(s) ne reçoivent aucune ligne du remplissage : strategy.fill_density de {1} % est trop faible pour leur taille ; la plus grande, {2} mm^2, est à {3} ; augmentez fill_density, ou prenez un autre fill_angle</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>{0} repeats a condition; give each condition once</source>
-        <translation>{0} répète une condition ; donnez chaque condition une fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -17212,11 +17007,6 @@
         <translation>{0} à {1} n&apos;est pas une plage ; donnez d&apos;abord la borne inférieure</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>{0} to {1} mm needs a largest step between layers; give strategy.cusp, for example 0.2 mm</source>
-        <translation>de {0} à {1} mm, il faut une marche maximale entre les couches ; donnez strategy.cusp, par exemple 0.2 mm</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>{0} touched points put the part at [{1}] mm and deg in the robot base; residuals at the points: {2} mm, {3} mm root mean square</source>
         <translation>d&apos;après {0} points palpés, le repère de la pièce est en [{1}] mm et deg dans la base du robot ; écarts aux points : {2} mm, {3} mm en moyenne quadratique</translation>
@@ -17270,11 +17060,6 @@
         <location filename="../../freecad_am/core/planning/findings.py"/>
         <source>{0} would be at {1} {2}, beyond its limit of {3} {4}; move the part on the table</source>
         <translation>{0} serait à {1} {2}, sa limite est {3} {4} ; déplacez la pièce sur la table</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
-        <source>{0} would make beads larger, because the wire feed is constant; use process.wire.feed_mode: proportional, or strategy.layer_time.by: wait</source>
-        <translation>{0} grossirait les cordons, car la vitesse de fil est constante ; utilisez process.wire.feed_mode: proportional, ou strategy.layer_time.by: wait</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
@@ -17400,11 +17185,6 @@
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>{0}. Besides, {1}</source>
         <translation>{0}. De plus, {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>{0}.{1} has no effect with process.seam.position: {2}; remove the key, or use position: {3}</source>
-        <translation>{0}.{1} est sans effet avec process.seam.position : {2} ; supprimez-le, ou choisissez position : {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -17535,11 +17315,6 @@
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
         <source>{0}: the wall is smoothed across facets, by up to {1} mm, at {2}</source>
         <translation>{0} : là où des facettes se rencontrent sous un angle la paroi est lissée, jusqu&apos;à {1} mm de celles-ci, en {2}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/wire.py"/>
-        <source>{0}: the wire feeds {1} mm3/s, but the beads need {2} mm3/s at their travel speed; set the wire feed of the place to {3} mm/s or to auto, or correct its travel speed</source>
-        <translation>{0} : le fil apporte {1} mm3/s, mais les cordons demandent {2} mm3/s à leur vitesse d&apos;avance ; réglez le dévidage de l&apos;endroit sur {3} mm/s ou sur auto, ou corrigez sa vitesse d&apos;avance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
@@ -17698,8 +17473,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0}; use constant and one wire feed in all places, or another controller</source>
-        <translation>{0} ; utilisez constant et un seul dévidage à tous les endroits, ou une autre commande</translation>
+        <source>{0}; use constant, or another controller</source>
+        <translation>{0} ; utilisez constant, ou une autre commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -17792,14 +17567,14 @@
         <translation>{label} dépasse de {value:.2f}{unit} sa limite</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
+        <source>{label} was computed again</source>
+        <translation>{label} a été recalculé</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/dock_area.py"/>
         <source>{label} was deleted</source>
         <translation>{label} a été supprimé</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/simulation/dock.py"/>
-        <source>{label} was recomputed</source>
-        <translation>{label} a été recalculé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/in_language.py"/>
@@ -17928,8 +17703,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
-        <source>{} has changed; recompute.</source>
-        <translation>{} a changé ; recalculez.</translation>
+        <source>{} has changed; compute again.</source>
+        <translation>{} a changé ; calculez de nouveau.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
@@ -18331,8 +18106,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Opens a part or mesh; a separate process reads the file, so a damaged file cannot crash FreeCAD</source>
-        <translation>Ouvre une pièce ou un maillage ; un processus à part lit le fichier, donc un fichier endommagé ne peut pas faire planter FreeCAD</translation>
+        <source>Opens a part or mesh from a file in a separate process, even if the file is damaged</source>
+        <translation>Ouvre une pièce ou un maillage d&apos;un fichier dans un processus à part, même si le fichier est endommagé</translation>
     </message>
 </context>
 <context>

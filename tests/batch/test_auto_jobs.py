@@ -134,8 +134,7 @@ def test_what_stands_on_something_bent_gets_layers_of_its_shape():
     together = propose(Part.makeCompound([blades[0], hub, *blades[1:]]), width=4.0)
     assert (
         together.layers == "planes"
-        and "other solids rest on the curved surface of Solid2; choose it as the substrate"
-        in together.reason
+        and "other solids are on the bend of Solid2: as the substrate" in together.reason
     )
     separate = propose(
         Part.makeCompound([hub, *(blade_.translated(Vector(0, 0, 200)) for blade_ in blades)]),
@@ -491,8 +490,8 @@ def test_where_curved_layers_cannot_be_carried_out_there_are_planes(workshop):
         "layer_height: 5 mm, chord_error: 0.1 mm", "layer_height: 8 mm, chord_error: 0.4 mm"
     )
     text = (
-        coarse.replace("auto,", "auto, bead_spacing: 10 mm,")
-        + "process: {bead_width: 10 mm}\n"
+        coarse.replace("auto,", "auto, bead_spacing: 6 mm,")
+        + "process: {bead_width: 6 mm}\n"
         + cell
     )
     report, rows = planned(workshop, text)

@@ -219,7 +219,7 @@ def test_heights_where_axes_cannot_follow_are_those_of_the_speed_as_run(fin):
     assert speed < 4.0 and high > 1.05 * (
         m * (60.0 * 5.0) ** (-1.0 / 3.0) + t
     )  # below the slowest speed of the table
-    assert message.startswith("at the speed that the axes reach, ")
+    assert message.startswith("limited to the speed of the axes, ")
 
 
 def _fitted(column):

@@ -45,13 +45,6 @@ class Cluster:
             tempfile.mkdtemp(prefix="cluster-")
         )  # not in a folder of pytest, which is closed to other users
         self.folder.chmod(0o777)
-        environment = {
-            **os.environ,
-            "HOME": str(self.folder),
-            "FREECAD_USER_HOME": str(self.folder),
-            # as at a user: a worker compiles the package once, not once a row
-            "PYTHONDONTWRITEBYTECODE": "",
-        }
         self.process = subprocess.Popen(
             [
                 sys.executable,
@@ -64,7 +57,7 @@ class Cluster:
             stderr=subprocess.DEVNULL,
             text=True,
             start_new_session=True,
-            env=environment,
+            env={**os.environ, "HOME": str(self.folder), "FREECAD_USER_HOME": str(self.folder)},
         )
         self.address = json.loads(self.process.stdout.readline())
 
@@ -161,7 +154,7 @@ def write_rows(workshop, heights=HEIGHTS):
 @dask
 @pytest.mark.parametrize(
     "heights",
-    [HEIGHTS[:3], pytest.param([10 + k / 20 for k in range(200)], marks=pytest.mark.long)],
+    [HEIGHTS, pytest.param([10 + k / 20 for k in range(200)], marks=pytest.mark.long)],
     ids=["a few rows", "200 rows"],
 )
 def test_same_bytes_as_without_and_a_lost_worker_loses_nothing(workshop, cluster, heights):

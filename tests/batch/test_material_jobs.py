@@ -237,7 +237,7 @@ def test_a_slowest_speed_above_the_fastest(workshop):
     assert (
         command.status == 2
         and "error[BAD_VALUE]" in command.err
-        and "9 mm/s exceeds the maximum speed, 5 mm/s" in command.err
+        and "9 mm/s is above the fastest speed, 5 mm/s" in command.err
     )
 
 

@@ -176,13 +176,7 @@ def test_a_saved_document_keeps_places_and_follows_their_solid(workshop):
         ("{process: {travel_speed: 4}}", "settings[0].where", "missing"),
         ("{where: {layers: [0, 1]}}", "settings[0].process", "nothing"),
         ("{where: {layers: [0, 1]}, process: {bead_width: 4}}", "settings[0].process.bead_width", "vary"),
-        ("{where: {layers: [0, 1]}, process: {seam: {scarf: 4}}}", "settings[0].process.seam.scarf", "yet"),
-        ("{where: {layers: [0, 1]}, process: {seam: {position: here}}}", "settings[0].process.seam.position", "sharpest"),
-        ("{where: {layers: [0, 1]}, process: {seam: {point: [1, 2]}}}", "settings[0].process.seam.point", "three"),
-        ("{where: {layers: [0, 1]}, process: {wire: 4}}", "settings[0].process.wire", "section"),
-        ("{where: {layers: [0, 1]}, process: {wire: {diameter: 4}}}", "settings[0].process.wire.diameter", "vary"),
-        ("{where: {layers: [0, 1]}, process: {wire: {feed: -4}}}", "settings[0].process.wire.feed", "range"),
-        ("{where: {layers: [0, 1]}, process: {wire: {feed: 1 kg}}}", "settings[0].process.wire.feed", "kg"),
+        ("{where: {layers: [0, 1]}, process: {seam: {angle: 4}}}", "settings[0].process.seam", "yet"),
         ("{where: {layers: [0, 1]}, strategy: {layer_height: 4}}", "settings[0].strategy.layer_height", "vary"),
         ("{where: {layers: [0, 1]}, process: {travel_speed: -4}}", "settings[0].process.travel_speed", "range"),
         ("{where: {layers: [0, 1]}, process: {schedule: 1.5}}", "settings[0].process.schedule", "whole"),
@@ -215,92 +209,6 @@ def test_other_wrong_settings_are_named(workshop):
     assert "is not a solid, so it has no inside" in refusal(workshop)
     write(workshop, SETTINGS.replace("Face1", "Face99"))
     assert "has no Face99; it has Face1 to Face6" in refusal(workshop)
-
-
-def test_wire_feed_and_seam_of_a_place_reach_the_rows(workshop):
-    settings = """\
-settings:
-  - where: {layers: [2, null]}
-    process: {seam: {position: point, point: [0, 0, 8]}}
-  - where: {height: [3 mm, null]}
-    process: {travel_speed: 3 mm/s, wire: {feed: auto}}
-  - where: {inside: {box: [-1, 14, -1, 40, 40, 1]}}
-    process: {wire: {feed: 2.4 m/min}}
-"""
-    job = JOB.replace("  schedule: 9\n", "").replace(", schedule: 3}", "}")
-    write(workshop, settings, job.replace("program: {post: fanuc, schedule: {output: 5}}\n", ""))
-    done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
-    rows = rows_of(workshop.folder / "out" / "waypoints.csv")
-    rows = [row for row in rows if row["kind"] == "deposit" and row["point"] != "0"]
-    report = json.loads((workshop.folder / "out" / "report.json").read_text())
-    nominal = report["process"]["wire"]["feed_mm_s"]
-    wanted = {"": nominal, "1": 0.5 * nominal, "2": 40.0}
-    feed = numbers(rows, "wire_feed_mm_s")[:, 0]
-    np.testing.assert_allclose(feed, [wanted[row["setting"]] for row in rows], atol=1e-6)
-    assert {row["setting"] for row in rows} == {"", "1", "2"}
-    contours = [
-        row
-        for row in rows_of(workshop.folder / "out" / "waypoints.csv")
-        if row["class"] == "contour"
-    ]
-    starts = [row for row in contours if row["kind"] == "deposit" and row["point"] == "0"]
-    assert {row["layer"] for row in starts} == {"1", "2", "3"}
-    for row in starts:  # contours are half a bead inside
-        is_near = bool(np.all(numbers([row], "x_mm", "y_mm")[0] < 2.1))
-        assert is_near == (int(row["layer"]) >= 2)
-    modelled = JOB.replace("  schedule: 9\n", "  bead_model: csw\n").replace("  classes:", "  #")
-    write(workshop, settings.replace("travel_speed: 3 mm/s, ", ""), modelled)
-    assert "the bead model is for one wire feed" in refusal(workshop)
-
-
-@pytest.mark.parametrize("sequence", ["feature", "height"])
-def test_settings_of_several_features_hold_in_the_whole_job(workshop, sequence):
-    """Layers are numbered through, and heights count from the lowest point of all features."""
-    Part.makeBox(20.0, 12.0, 8.0).exportStep(str(workshop.folder / "low.step"))
-    other = Part.makeBox(20.0, 12.0, 6.0, FreeCAD.Vector(40.0, 0.0, 0.0))
-    other.exportStep(str(workshop.folder / "other.step"))
-    zone = Part.makeBox(15.0, 40.0, 20.0, FreeCAD.Vector(30.0, -5.0, -5.0))
-    zone.exportStep(str(workshop.folder / "across.step"))
-    (workshop.folder / "two.yaml").write_text(f"""\
-version: 1
-name: two
-strategy: {{kind: solid, layer_height: 2 mm, bead_spacing: 4 mm, fill: lines, chord_error: 0.1 mm}}
-build_direction: {{clearance: none}}
-process: {{bead_width: 4 mm, travel_speed: 6 mm/s}}
-sequence: {sequence}
-features:
-  - {{name: low, part: {{file: low.step}}}}
-  - {{name: other, part: {{file: other.step}}, strategy: {{layer_height: 3 mm}}, process: {{travel_speed: 9 mm/s}}}}
-settings:
-  - where: {{layers: [2, 3]}}
-    process: {{travel_speed: 2 mm/s}}
-  - where: {{height: [5 mm, null]}}
-    process: {{travel_speed: 3 mm/s}}
-  - where: {{inside: {{file: across.step}}}}
-    process: {{travel_speed: 4 mm/s}}
-  - where: {{layers: [9, null]}}
-    process: {{travel_speed: 5 mm/s}}
-""")
-    done = workshop.run("plan", "two.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
-    assert done.err.count("SETTING_UNUSED") == 1 and "settings[3] has no effect" in done.err
-    rows = rows_of(workshop.folder / "out" / "waypoints.csv")
-    place = numbers(rows, "x_mm", "y_mm", "z_mm")
-    follows = [k for k, row in enumerate(rows) if row["kind"] == "deposit" and row["point"] != "0"]
-    middle = 0.5 * (place[follows] + place[[k - 1 for k in follows]])
-    layer = numbers([rows[k] for k in follows], "layer")[:, 0]
-    height = place[follows, 2] - place[:, 2].min()
-    held = [(layer >= 2) & (layer <= 3), height >= 5.0 - 1e-6, np.abs(middle[:, 0] - 37.5) <= 7.5]
-    last = np.max([np.where(one, k, -1) for k, one in enumerate(held)], axis=0)
-    told = [int(rows[k]["setting"] or -1) for k in follows]
-    np.testing.assert_array_equal(told, last)
-    assert set(told) == {-1, 0, 1, 2}
-    speed = numbers([rows[k] for k in follows], "speed_mm_s")[:, 0]
-    usual = np.where(middle[:, 0] > 30.0, 9.0, 6.0)
-    np.testing.assert_allclose(
-        speed, np.where(last < 0, usual, np.array([2.0, 3.0, 4.0, 0.0])[last])
-    )
 
 
 def refusal(workshop):

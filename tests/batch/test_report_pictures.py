@@ -12,7 +12,7 @@ TITLES = (
     "Joint speeds while depositing",
     "Joint accelerations while depositing",
     "Joint jerks while depositing",
-    "Inverse condition number of the Jacobian (0 is singular)",
+    "Condition of the Jacobian (0 is singular)",
     "Speed along the path",
     "Deposit rate",
     "Deposited mass",

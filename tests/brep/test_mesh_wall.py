@@ -182,7 +182,7 @@ def test_facets_that_cross_in_one_place_are_cut_out_and_what_cuts_itself_farther
     mesh_wall = wall(crossed(10), faces, mend=8.0)
     messages = " ".join(issue.message for issue in mesh_wall.issues if issue.code == "MENDED")
     assert (
-        "8 intersecting triangles were removed, for instance at (" in messages
+        "8 intersecting triangles were removed, as at (" in messages
         and "leaving holes up to 7.4 mm across" in messages
     )
     wall_layers = layers(mesh_wall)

@@ -102,7 +102,7 @@ def test_the_slider_shows_shares_and_section_of_each_layer(person, hand, plate):
     assert person.screen_pixels(GREY) > 1000
     assert person.screen_pixels(RED) > 20 and person.screen_pixels(BLUE) > 20
     text = person.field(panel, "void").text()
-    assert re.search(r"the largest [\d.]+ mm wide, at \(", text)
+    assert re.search(r"the largest place [\d.]+ mm wide at \(", text)
 
 
 def test_the_worst_layer_and_no_drawing(person, hand, plate):

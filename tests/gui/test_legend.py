@@ -34,7 +34,7 @@ def visible_legends(person):
 def test_each_colouring_has_its_legend(person, toolpath):
     vobj = toolpath.ViewObject
     assert vobj.getEnumerationsOfProperty("Colouring") == list(colouring.KINDS)
-    for kind, unit in zip(colouring.KINDS, ("", "mm", "deg", "mm/s", "", "", ""), strict=True):
+    for kind, unit in zip(colouring.KINDS, ("", "mm", "deg", "mm/s", "", ""), strict=True):
         vobj.Colouring = kind
         person.idle()
         assert visible_legends(person) == [(kind, unit)]
@@ -48,7 +48,7 @@ def test_each_colouring_has_its_legend(person, toolpath):
     assert visible_legends(person) == []
     vobj.Visibility = True
     person.idle()
-    assert visible_legends(person) == [("setting", "")]
+    assert visible_legends(person) == [("kind of bead", "")]
 
 
 def test_the_legend_is_on_the_screen_and_stays_where_it_is(person, toolpath):

@@ -114,39 +114,3 @@ def test_the_legend_of_what_is_out_of_reach_altogether_says_so(person, hemispher
     )
     person.screenshot(f"legend_unreachable_{kind.replace(' ', '_')}")
     assert person.screen_pixels(RED, 4) > 100  # its mark in the legend
-
-
-def test_settings_by_place_are_coloured_by_the_last_that_holds(person, hemisphere):
-    document = hemisphere.Document
-    feature = api.make_feature(document, hemisphere, layer_height=5)
-    text = "layers 1 to 3: travel_speed 6; box 0 -99 0 99 99 99 and layers from 3: travel_speed 4"
-    toolpath = api.make_toolpath(document, feature, settings=text)
-    colours, scale = colouring.coloured(api.result(toolpath), colouring.SETTING, 0.2)
-    first, second = colouring.SETTING_COLOURS[:2]
-    assert scale.classes == (
-        colouring.NO_SETTING,
-        ("setting 0", first),
-        ("setting 1", second),
-    )
-    entries = list(api.result(toolpath))
-    layer = np.repeat([layer for layer, _, _ in entries], [len(bead) for _, _, bead in entries])
-    in_box = np.concatenate(
-        [np.r_[_middles(bead)[0], _middles(bead)] > 0.0 for _, _, bead in entries]
-    )
-    expected = np.where((layer >= 1) & (layer <= 3), 0, -1)
-    expected[in_box & (layer >= 3)] = 1
-    palette = np.array([first, second, colouring.NONE])
-    assert np.array_equal(colours, palette[expected])
-    texts = {scale.text_at(int(np.flatnonzero(expected == number)[0])) for number in (-1, 0, 1)}
-    assert texts == {"setting none", "setting 0", "setting 1"}
-    toolpath.ViewObject.Colouring = "setting"
-    person.idle()
-    person.look()
-    person.screenshot("path_settings")
-    for colour in (first, second):
-        assert person.screen_pixels(tuple(round(255 * channel) for channel in colour), 6) > 50
-
-
-def _middles(bead):
-    """Return the x of the middle of each segment of a bead."""
-    return (bead.points[1:, 0] + bead.points[:-1, 0]) / 2.0

@@ -64,7 +64,6 @@ LATER_FIELDS = (
     "halt",
     "retreat",
     "min_layer_time",
-    "slowing",
     "predicted",
     "shape_of_deposit",
     "machining_allowance",

@@ -362,11 +362,7 @@ def test_a_wire_feed_of_an_older_document_keeps_its_number_and_may_become_auto(h
 
 # what some keys need: a value of their own, or another key beside them
 JOB_NUMBERS = {"spacing_range_high": 1.4, "spacing_range_low": 0.7, "step": 200.0}
-JOB_COMPANIONS = {
-    ("strategy", "least_height"): {"layer_height": 5, "cusp": 1},
-    ("strategy", "cusp"): {"layer_height": 5, "least_height": 1},
-    ("strategy", "base_height"): {"base": {"radius": 50.0}},
-}
+JOB_COMPANIONS = {("strategy", "base_height"): {"base": {"radius": 50.0}}}
 JOB_COMPANIONS["inspection", "side"] = {"thickness": 2.0}
 NOT_FOR_CLADDING = ("solid_layers", "margin")
 

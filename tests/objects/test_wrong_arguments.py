@@ -373,7 +373,7 @@ def test_a_stage_is_not_made_from_what_follows_it(world):
             {"axis": (later, "Edge1")},
         ):
             error = call(world, "change", {"obj": world.feature, **links})
-            assert error.code == "BAD_INPUT" and "depends on" in error.message
+            assert error.code == "BAD_INPUT" and "is made from" in error.message
 
 
 @pytest.mark.parametrize(

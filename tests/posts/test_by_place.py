@@ -16,10 +16,9 @@ from freecad_am.core.parameters.program import NcParameters, ProgramParameters, 
 from freecad_am.core.parameters.settings import Setting
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.process.wire import set_wire_feed
 from freecad_am.core.program import DepositOff, DepositOn, Moves, Schedule, Weave
 from freecad_am.core.simulation.timeline import timeline
-from freecad_am.core.strategies.by_place import Stack, apply_settings
+from freecad_am.core.strategies.by_place import apply_settings
 from freecad_am.core.toolpath import Layer, MotionRules, Toolpath
 from freecad_am.objects.program import refuse
 from freecad_am.posts import catalogue
@@ -46,7 +45,6 @@ SLOW, FAST = 5.0, 11.0
 LAYER = Setting(first_layer=1, travel_speed=SLOW, schedule=3)
 BAND = Setting(low=4.0, high=9.5, travel_speed=FAST, schedule=4)  # beads rise by 18 mm
 EACH = [tuple(name.split(" ", 3)) for name in ONE_OF_EACH]
-FEEDS = 21.0, 33.0  # mm/s of wire in the layer and in the band
 LEANS = ("fanuc", "yaskawa")  # weave numbers on linear moves
 
 
@@ -69,9 +67,7 @@ def placed(name, process):
     rules = MotionRules(max_from_vertical=setup.most)
     toolpath = Toolpath(layers, np.eye(4), HEIGHT, CHORD_ERROR, family="developable", rules=rules)
     low = min(bead.points[:, 2].min() for _, _, bead in toolpath)
-    toolpath = apply_settings(toolpath, process, (), Stack(UP))
-    if any(setting.wire_feed is not None for setting in process.settings):
-        toolpath = set_wire_feed(dataclasses.replace(toolpath, bead_width=5.0), process, None)
+    toolpath = apply_settings(toolpath, process, (), UP)
     path = plan_joints(toolpath, cell, JointParameters(degree=1))
     motion, _ = assemble(path, cell, process, [body(setup)], layer_height=HEIGHT)
     return cell, motion, low
@@ -96,7 +92,6 @@ def written(way, keys, by="output"):
             travel_speed=one.travel_speed if "travel_speed" in keys else None,
             schedule=one.schedule if "schedule" in keys else None,
             weave=dict(zip((LAYER, BAND), (1, 2)))[one] if "weave" in keys else None,
-            wire_feed=dict(zip((LAYER, BAND), FEEDS))[one] if "wire_feed" in keys else None,
             lead_on=0.3 if one is BAND else 0.4,
         )
         for one in (LAYER, BAND)
@@ -228,31 +223,6 @@ def test_a_weave_changes_inside_a_bead_and_is_read_back(post):
             woven += [weave] * len(block)
     moves = motion.deposit & (motion.point > 0)
     assert woven == expected(motion, low, 1, 2, 0)[moves].tolist()
-
-
-@pytest.mark.parametrize("way", EACH, ids=" ".join)
-def test_the_wire_feed_changes_inside_beads_or_the_post_says_why_not(way):
-    if way[0] == "abb":
-        way = next(one for one in WAYS if one[:2] == ("abb", "cartesian") and "tool" in one[3])
-    cell, process, motion, program, low = written(way, ("travel_speed", "wire_feed"))
-    moves = motion.deposit & (motion.point > 0)
-    balanced = 5.0 * HEIGHT * SPEED / process.wire.section
-    wanted = expected(motion, low, *FEEDS, balanced)[moves]
-    np.testing.assert_allclose(motion.wire[moves], wanted, rtol=1e-9)
-    if way[0] not in ("siemens", "linuxcnc", "abb"):
-        with pytest.raises(InputError) as error:
-            refuse(cell, process, parameters_of(way))
-            catalogue.load(way[0]).write(program)
-        assert error.value.code == "NO_WIRE_OUTPUT"
-        return
-    post = catalogue.load(way[0])
-    found = verify(cell, motion, program, post.write(program), post, CHORD_ERROR)
-    assert [issue.code for issue in found.issues if issue.level == ERROR] == []
-    # a text with the feed of the layer everywhere is not the plan
-    even = dataclasses.replace(motion, wire=np.where(motion.deposit, FEEDS[0], np.nan))
-    other = build(even, cell, process, parameters_of(way), "job")
-    refused = verify(cell, motion, program, post.write(other), post, CHORD_ERROR)
-    assert "VERIFY_WIRE" in {issue.code for issue in refused.issues}
 
 
 def test_leads_are_those_of_the_places_where_beads_begin_and_end():

@@ -163,7 +163,7 @@ def test_random_programs_come_back(random_program, seed, motion):
     (r"CNT0 ", "CNT0 RTCP", "HAND.LS line 16", "RTCP"),
     (r"J P\[1\] 250msec", "C P[1]", "HAND.LS line 15", "'C P[1]"),
     (r"J P\[1\] 250msec", "J PR[1] 250msec", "HAND.LS line 15", "PR[1]"),
-    (r"J P\[1\] 250msec", "L P[1] 6mm/sec", "HAND.LS line 15", "the type of its recorded position"),
+    (r"J P\[1\] 250msec", "L P[1] 6mm/sec", "HAND.LS line 15", "the form in which its position is recorded"),
     (r"250msec", "6mm/sec", "HAND.LS line 15", "mm/sec"),
     (r"250msec", "100cm/min", "HAND.LS line 15", "cm/min"),
     (r"J P\[1\] 250", "J P[3] 250", "HAND.LS line 15", "P[3] is not recorded"),

@@ -40,7 +40,7 @@ ON_TABLES = (
     "linuxcnc",
 )  # posts of five-axis machines, which have a test file of their own
 # refused combinations, by code and a word of the reason
-NOT_WRITTEN, BOTH = ("UNSUPPORTED_AXES", "cannot use a"), "track and positioner"
+NOT_WRITTEN, BOTH = ("UNSUPPORTED_AXES", "not written with a"), "track and positioner"
 RAIL = {
     "fanuc": "depending on the setup of the rail",
     "yaskawa": "their speed may include this motion",

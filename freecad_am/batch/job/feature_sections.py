@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -120,44 +119,26 @@ def settings_of(section: Any, part_section: Any) -> PlaceSettings:
 def _place_values(entry: dict[str, Any], where: str) -> dict[str, Any]:
     """What an entry sets. Raises InputError for keys that cannot vary by place."""
     values: dict[str, Any] = {}
-    for name in by_place.SECTIONS:
+    for name, allowed in by_place.SECTIONS.items():
         if entry.get(name) in (None, {}):
             continue
         section = fields.mapping(entry[name], f"{where}.{name}")
-        for key, value in _nested(section, name, where):
-            field = by_place.JOB_KEYS.get(key)
-            if field is None:
-                future = key.startswith(by_place.FUTURE_KEYS)
-                raise InputError(
-                    "NOT_YET" if future else "UNKNOWN_KEY",
-                    f"{where}.{key}",
-                    "{!r} cannot vary by place{}; use one of {}, or set it for the whole job",
-                    key.partition(".")[2],
-                    Word(" yet" if future else ""),
-                    ", ".join(by_place.JOB_KEYS),
-                )
-            values[field] = _place_value(value, field, f"{where}.{key}")
+        for key, value in section.items():
+            if key in allowed:
+                kind = by_place.SPECS[key].kind
+                dotted_key = f"{where}.{name}.{key}"
+                # the setting checks numbers
+                values[key] = value if kind == f.COUNT else quantities.read(value, kind, dotted_key)
+                continue
+            raise InputError(
+                "NOT_YET" if key in by_place.FUTURE_KEYS[name] else "UNKNOWN_KEY",
+                f"{where}.{name}.{key}",
+                "{!r} cannot vary by place{}; use one of {}, or set it for the whole job",
+                key,
+                Word(" yet" if key in by_place.FUTURE_KEYS[name] else ""),
+                ", ".join(by_place.VALUE_KEYS),
+            )
     return values
-
-
-def _nested(section: dict[str, Any], name: str, where: str) -> Iterator[tuple[str, Any]]:
-    """Yield the dotted keys of a section that may vary by place, and the values."""
-    for key, value in section.items():
-        dotted_key = f"{name}.{key}"
-        if any(job_key.startswith(f"{dotted_key}.") for job_key in by_place.JOB_KEYS):
-            inner = fields.mapping(value, f"{where}.{dotted_key}")
-            yield from _nested(inner, dotted_key, where)
-        else:
-            yield dotted_key, value
-
-
-def _place_value(value: Any, name: str, key: str) -> Any:
-    """Return the value of a field of a setting in inner units; the setting checks its range."""
-    field = next(field for field in dataclasses.fields(Setting) if field.name == name)
-    try:
-        return fields.read_value(f.spec_of(field), field, value, key)
-    except InputError as error:
-        raise InputError(error.code, key, error.message) from None
 
 
 def _conditions(
@@ -371,13 +352,6 @@ def strategy_of(section: Any) -> LayerParameters:
     if family.kind != kind:  # the name of its layers, which has said all
         section = {key: value for key, value in section.items() if key != "layers"}
     names = {field.name for field in dataclasses.fields(family.parameters)}
-    if isinstance(section.get("layer_height"), dict) and "least_height" not in names:
-        raise InputError(
-            "NOT_FOR_FAMILY",
-            "strategy.layer_height",
-            "layer heights adapt in solids with layers: planes only, not in {}; give one length",
-            family.kind,
-        )
     for name, write in _WRITTEN.items():
         if name in names:
             section = write(section)
@@ -400,27 +374,8 @@ def _without_auto_base(section: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in section.items() if (key, value) != ("base", "auto")}
 
 
-def _split_heights(section: dict[str, Any]) -> dict[str, Any]:
-    """Return the section with `layer_height: {least, most}` as two heights."""
-    heights = section.get("layer_height")
-    if not isinstance(heights, dict) or not heights:
-        return section
-    where = "strategy.layer_height"
-    fields.known_keys(heights, ("least", "most"), where)
-    for key in ("least", "most"):
-        if heights.get(key) in (None, {}):
-            raise InputError(
-                "BAD_VALUE", f"{where}.{key}", "the value is missing; give a length such as 2 mm"
-            )
-    return {**section, "layer_height": heights["most"], "least_height": heights["least"]}
-
-
 # keys that a job writes in another way than parameters
-_WRITTEN = {
-    "base": _without_auto_base,
-    "roles": _roles_as_text,
-    "least_height": _split_heights,
-}
+_WRITTEN = {"base": _without_auto_base, "roles": _roles_as_text}
 
 
 # ---- Material files: data of a wire and its beads, which complete the section `process` of a job

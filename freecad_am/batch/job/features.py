@@ -22,7 +22,6 @@ from ...core.process.wire import model_wire_feed
 from ...objects.fields import quantities
 from ...sections import fields, tree
 from .feature_sections import (
-    PlaceSettings,
     kept_clear,
     process_of,
     refuse_direction,
@@ -223,7 +222,6 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str) -> Jo
     substrate = (
         None if ground is None else part_of(fields.mapping(ground, "substrate"), "substrate")
     )
-    by_place = settings_of(values.get("settings"), part_section)
     return JobFeature(
         name,
         part_of(part_section),
@@ -233,9 +231,11 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str) -> Jo
         fields.build(
             BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"
         ),
-        dataclasses.replace(process_of(values.get("process") or {}), settings=by_place.settings),
+        dataclasses.replace(
+            process_of(values.get("process") or {}),
+            settings=settings_of(values.get("settings"), part_section).settings,
+        ),
         sections=values,
-        zones=by_place.solids,
     )
 
 
@@ -273,8 +273,7 @@ def chosen(feature: JobFeature, kind: str, layers: str, mend: float, mode: str =
         values.pop("substrate", None)
     if not family.fuses_solids and isinstance(values["part"], dict):
         values["part"] = {key: value for key, value in values["part"].items() if key != "fuse"}
-    by_place = PlaceSettings(feature.process.settings, feature.zones)
-    return _add_settings(one_feature(values, feature.name), by_place)
+    return one_feature(values, feature.name)
 
 
 def planes_of(feature: JobFeature) -> SolidParameters:
@@ -292,6 +291,13 @@ def _keys(family: Family) -> tuple[str, ...]:
 
 def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
     """Convert the features listed in a job file. Raises InputError naming feature and key."""
+    if values.get("settings"):
+        raise InputError(
+            "NOT_YET",
+            "settings",
+            "settings by place are for one feature yet; remove them, or put each feature in its own "
+            "job",
+        )
     entries = values["features"]
     if not isinstance(entries, list) or not entries:
         raise InputError(
@@ -320,14 +326,7 @@ def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
             features.append(one_feature(_merge_defaults(feature_section, values), name))
         except InputError as error:
             raise about_feature(error, number, name, lines) from None
-    part_section = _merge_defaults(entries[0], values).get("part")
-    by_place = settings_of(values.get("settings"), part_section)
-    return tuple(_add_settings(feature, by_place) for feature in features)
-
-
-def _add_settings(feature: JobFeature, by_place: PlaceSettings) -> JobFeature:
-    process = dataclasses.replace(feature.process, settings=by_place.settings)
-    return dataclasses.replace(feature, process=process, zones=by_place.solids)
+    return tuple(features)
 
 
 def in_words_of_job(error: InputError, label: str = "Feature") -> InputError:

@@ -169,10 +169,8 @@ def _checked(job: tree.Tree, path: str) -> Job:
         features: tuple[JobFeature, ...] = (one_feature(values, name),)
         process = features[0].process
     else:
+        process = process_of(values.get("process") or {})
         features = several(values, job)
-        process = replace(
-            process_of(values.get("process") or {}), settings=features[0].process.settings
-        )
     cell = job_cell.read(values.get("cell"), folder)
     program = _program(values.get("program"), cell)
     scan = next((feature.scan for feature in features if feature.scan is not None), None)

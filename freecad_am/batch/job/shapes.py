@@ -419,13 +419,13 @@ class Shapes:
 
 def toolpath_of(job: Job, document: Any, features: Sequence[Any], cell: Any, scan: Any) -> Any:
     """Create the toolpath of the features of a job; a single feature is fitted to its scan, if any."""
-    process, zones = _bring_zones(document, job)
     if len(features) == 1:
         fitting = (
             None
             if scan is None or job.features[0].scan is None
             else job.features[0].scan.parameters
         )
+        process, zones = _bring_zones(document, job)
         return api.make_toolpath(
             document,
             features[0],
@@ -440,9 +440,8 @@ def toolpath_of(job: Job, document: Any, features: Sequence[Any], cell: Any, sca
         features,
         cell,
         sequence=job.sequence,
-        process=process,
-        processes=[replace(feature.process, settings=process.settings) for feature in job.features],
-        zones=zones,
+        process=job.process,
+        processes=[feature.process for feature in job.features],
     )
 
 

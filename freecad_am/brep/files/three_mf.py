@@ -700,7 +700,7 @@ class _Package:
             if not free[begin : end + 1].all():
                 raise _bad(
                     self.where,
-                    Text("the slicer assigns two roles to triangle {} of {!r}", begin, name),
+                    Text("the slicer's roles name triangle {} of {!r} twice", begin, name),
                 )
             free[begin : end + 1] = False
             ranges.append((corners[begin : end + 1], volume))

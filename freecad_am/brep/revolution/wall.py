@@ -237,7 +237,7 @@ def _only_solid(
         )
     names = Text.joined(", ", (name for name, *_ in walls))
     raise InputError(
-        "SEVERAL_SOLIDS", label, "{} each have a wall; select the faces of one wall", names
+        "SEVERAL_SOLIDS", label, "{} all have a wall; select the faces of one wall", names
     )
 
 

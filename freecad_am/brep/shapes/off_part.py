@@ -19,7 +19,6 @@ from ...core.geometry.columns import dots
 from ...core.geometry.mesh.solid import Search, SolidMesh
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
-from ...core.progress import pulse_each
 from ...core.types import Array, Integers, Mask
 from ..kernel.process import in_kernel_process
 from .tessellate import triangles_of
@@ -82,7 +81,7 @@ def off_solids(shape: Any, points: Array, allowed: float) -> Array:
     distances, nearest = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.intp)
     meshed: list[tuple[Any, _Triangles]] = []
     meshes: list[tuple[_Triangles, Any]] = []  # of each solid, and the solid that it is of
-    for number, solid in enumerate(pulse_each(solids)):
+    for number, solid in enumerate(solids):
         twin = next((entry for entry in meshed if _differs_by_place(entry[0], solid)), None)
         if twin is None:
             mesh, local_points = _Triangles(solid.copy(False)), points
@@ -94,7 +93,7 @@ def off_solids(shape: Any, points: Array, allowed: float) -> Array:
         distance = np.maximum(mesh.signed(local_points[members]), 0.0)
         closer = ~(distance >= distances[members])  # NaN too: then it is unknown
         distances[members[closer]], nearest[members[closer]] = distance[closer], number
-    for number, solid in enumerate(pulse_each(solids)):
+    for number, solid in enumerate(solids):
         members = np.flatnonzero(nearest == number)
         distances[members] = _exact(
             solid.copy(False),
@@ -104,7 +103,7 @@ def off_solids(shape: Any, points: Array, allowed: float) -> Array:
             _deflection(solid),
             True,
         )
-    for (mesh, twin), solid in pulse_each(zip(meshes, solids, strict=True)):
+    for (mesh, twin), solid in zip(meshes, solids, strict=True):
         over = np.flatnonzero(distances > allowed)
         if len(over):
             distances[over[mesh.winds_around(_seen_from(twin, solid, points[over]))]] = 0.0
@@ -219,9 +218,7 @@ class _Triangles:
         """Whether the triangles go round points (n, 3) once or more, by the sum of their solid angles."""
         if self.corners is None:
             return np.zeros(len(points), dtype=bool)
-        inside = [
-            abs(_solid_angle(self.corners - point)) > 2.0 * np.pi for point in pulse_each(points)
-        ]
+        inside = [abs(_solid_angle(self.corners - point)) > 2.0 * np.pi for point in points]
         return np.array(inside, dtype=bool)
 
 
@@ -239,11 +236,11 @@ def _searched(vertices: Array, triangles: Any) -> Search:
 
 
 def _distances(search: Search, points: Array) -> Array:
-    return np.concatenate([search.distance(chunk) for chunk in pulse_each(_pieces(points))])
+    return np.concatenate([search.distance(chunk) for chunk in _pieces(points)])
 
 
 def _signed(search: Search, points: Array) -> Array:
-    return np.concatenate([search.signed(chunk)[0] for chunk in pulse_each(_pieces(points))])
+    return np.concatenate([search.signed(chunk)[0] for chunk in _pieces(points)])
 
 
 def _pieces(points: Array) -> list[Array]:
@@ -263,7 +260,7 @@ def _exact(
         : max(ALWAYS, min(MAX_KERNEL_POINTS, int((coarse > allowed + deflection).sum())))
     ]
     unsure = []
-    for k in pulse_each(checked.tolist()):
+    for k in checked.tolist():
         if len(unsure) > FAILURES:
             unsure.append(k)
             continue

@@ -15,7 +15,6 @@ from ...core.geometry.mesh.refine import Edges, quarter_triangles
 from ...core.geometry.mesh.solid import Search, SolidMesh
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
-from ...core.progress import pulse_each
 from ...core.types import Array, Index
 from ..kernel.process import in_kernel_process
 
@@ -66,9 +65,6 @@ class Tessellation(NamedTuple):
     nodes: list[Array]
 
 
-FACES_AT_ONCE = 100  # faces between two pulses
-
-
 def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
     """Tessellate a shape within `chord` mm, with shared vertices on common edges.
 
@@ -81,7 +77,7 @@ def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
         Shape=shape, LinearDeflection=chord, AngularDeflection=angle, Relative=False
     )
     points, corners, owner, nodes, count = [], [], [], [], 0
-    for k, face in enumerate(pulse_each(shape.Faces, FACES_AT_ONCE)):
+    for k, face in enumerate(shape.Faces):
         face_points, triangles = face.tessellate(chord) if divided(face) else ([], [])
         points.append(np.array([tuple(point) for point in face_points]).reshape(-1, 3))
         corners.append(np.array(triangles, dtype=np.intp).reshape(-1, 3) + count)
@@ -147,9 +143,7 @@ def fine(shape: Any, chord: float) -> Tessellation:
 
 
 def _fine(shape: Any, chord: float) -> Tessellation:
-    about = max(
-        (_about(face, chord) for face in pulse_each(shape.Faces, FACES_AT_ONCE)), default=0.0
-    )
+    about = max((_about(face, chord) for face in shape.Faces), default=0.0)
     if about < SLOW_TRIANGLES:
         return tessellated(shape, chord)
     # import here, because parts of revolution do not need splines

@@ -241,11 +241,11 @@ def _tables(face: Any, faces: tuple[str, ...], label: str) -> tuple[Tube, Tube]:
     closed_u = surface.isUClosed() and _spans(surface.bounds()[:2], low_u, high_u)
     closed_v = surface.isVClosed() and _spans(surface.bounds()[2:], low_v, high_v)
     if closed_u == closed_v:
-        what = "is closed in both directions" if closed_u else "has no closed direction"
+        what = "closes on itself both ways" if closed_u else "has no closed direction"
         raise InputError(
             "NOT_CLOSED",
             f"{label} {faces[0]}",
-            "the face {}; choose a tube that is closed in one direction",
+            "the face {}; choose a tube that is closed around",
             Word(what),
         )
     along, around = (

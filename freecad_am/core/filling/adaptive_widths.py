@@ -26,7 +26,6 @@ from ..geometry.curves.plane_curve import arcs, length, shorten_end
 from ..geometry.regions.region import Region, select_significant, select_simplified
 from ..geometry.regions.several import grow_regions
 from ..geometry.regions.spokes import Spokes, find_spokes
-from ..progress import pulse_each
 from ..types import Array, Index, Mask
 from .centre import (
     ROUND_END,
@@ -605,7 +604,7 @@ def _transitions(
     """
     counts, deciding, is_central = thickness.counts, thickness.radii, thickness.is_central
     transitions = []
-    for cycle in pulse_each(_cycles(spokes.following)):
+    for cycle in _cycles(spokes.following):
         for run in _runs(is_central[cycle]):
             if len(run) < len(cycle):
                 run = np.r_[run[0] - 1, run, (run[-1] + 1) % len(cycle)]

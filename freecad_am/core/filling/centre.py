@@ -22,7 +22,7 @@ from ..geometry.curves.plane_curve import (
     start_at,
 )
 from ..geometry.regions.medial import spine
-from ..geometry.regions.region import LINES_AT_ONCE, WIDENING, Region, along, simplified
+from ..geometry.regions.region import WIDENING, Region, along, simplified
 from ..geometry.regions.several import (
     HAIR_SHARE,
     grow_regions,
@@ -33,7 +33,6 @@ from ..geometry.regions.several import (
 )
 from ..geometry.regions.strip import Period, Strip, Window
 from ..issues import InfeasibleError
-from ..progress import pulse_each
 from ..types import Array, Mask
 
 # fractions of a bead's length by which the start moves from contour to contour and from layer to
@@ -502,7 +501,7 @@ def _near(
     borders = [dense(border, step) for region in regions for border in region.borders()]
     samples = [
         divided_by_step(np.vstack([points, points[:1]]) if closed else points, step)[0]
-        for points, closed in pulse_each(lines, LINES_AT_ONCE)
+        for points, closed in lines
     ]
     distances = cKDTree(np.vstack(borders)).query(np.vstack(samples))[0]
     starts = np.cumsum([0, *map(len, samples[:-1])])

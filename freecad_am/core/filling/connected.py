@@ -20,7 +20,6 @@ from scipy.spatial import cKDTree
 from ..geometry.curves.plane_curve import arcs, nearest, nearest_among
 from ..geometry.regions.region import Region, along
 from ..geometry.regions.several import grow_regions, select_longer, shrink_region, subtract_regions
-from ..progress import pulse_each
 from ..types import Array, Index, Mask
 from .centre import (
     Beads,
@@ -454,7 +453,7 @@ def _join(rings: list[Ring], links: list[list[Link]], beads: Beads) -> set[int]:
         waiting = [number for number in range(len(rings)) if number not in joined]
         while waiting:
             newly_joined = []
-            for number in pulse_each(waiting):
+            for number in waiting:
                 pairs = [
                     pair for pair in adjacent_pairs.get(number, ()) if pair.from_ring in joined
                 ]

@@ -17,7 +17,6 @@ from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import arcs, dense, divided_by_step, nearest_among
 from ..geometry.regions.region import DIGITS, WIDTH, Region, select_significant
-from ..progress import pulse_each
 from ..types import Array, Index, Mask
 from .centre import Beads, PlaneCurve
 
@@ -300,7 +299,7 @@ def _free_widths(edges: _Edges, rank: Index, spacing: float) -> Array:
     # radius of the circle that touches both edges
     radius = (gap**2).sum(axis=1) / np.maximum(2.0 * np.abs(aside), 1e-9 * spacing)
     lot = rank[edges.bead]
-    for level in pulse_each(range(MIDDLE_RANK + 1)):
+    for level in range(MIDDLE_RANK + 1):
         in_rank = lot[i] == level
         equal = np.flatnonzero(in_rank & (lot[j] == level))
         np.minimum.at(free, (i[equal], side[equal]), radius[equal])

@@ -14,7 +14,6 @@ import numpy as np
 
 from ..geometry.curves.plane_curve import length, nearest, rotate_points
 from ..geometry.regions.region import Region, simplified
-from ..progress import pulse, pulse_each
 from ..types import Array, Index
 from .adaptive_widths import (
     BeadLaw,
@@ -77,7 +76,7 @@ def in_rows(
     levels = [[line for line in lines if length(line, False) > min_edge] for lines in rows]
     open_ = [list(range(len(level))) for level in levels]
     curves = []
-    for row in pulse_each(range(len(levels))):
+    for row in range(len(levels)):
         while open_[row]:
             points = _chain(levels, open_, row, borders, longest_link, min_edge, inside)
             if length(points, False) >= beads.shortest:
@@ -279,26 +278,6 @@ class _Turn(NamedTuple):
     shares: Array
 
 
-def is_narrow(region: Region, law: BeadLaw, walls: int) -> bool:
-    """Whether a region is narrow inside its walls, so that contours alone fill it better.
-
-    Parameters
-    ----------
-    region : Region
-        Plane region, mm.
-    law : BeadLaw
-        Width and spacing of beads.
-    walls : int
-        Number of contours around lines, at least 1.
-
-    Returns
-    -------
-    bool
-        Whether lines would hardly be longer than wide.
-    """
-    return region.width < law.width + (2.0 * walls + NARROW - 1.0) * law.spacing
-
-
 def adapt_lines(
     region: Region,
     beads: Beads,
@@ -309,7 +288,7 @@ def adapt_lines(
 ) -> list[PlaneCurve]:
     """Fill a region with lines or zigzags of adaptive width inside contours.
 
-    A region that `is_narrow` inside its walls is filled with contours only, whatever the angle.
+    A region that is narrow inside its walls is filled with contours only.
 
     Parameters
     ----------
@@ -331,7 +310,7 @@ def adapt_lines(
     list of PlaneCurve
         Contours, lines or zigzags, and beads in the remaining gaps; empty if no bead fits.
     """
-    if is_narrow(region, law, walls):
+    if region.width < law.width + (2.0 * walls + NARROW - 1.0) * law.spacing:
         return adapt_contours(region, beads, law)
     curves = adapt_walls(region, beads, law, walls)
     for room in _rooms(region, curves, beads, law):
@@ -484,7 +463,7 @@ def _chain_runs(
     for run in runs:
         rows.setdefault(run.row, []).append(run)
     beads = []
-    for row in pulse_each(sorted(rows)):
+    for row in sorted(rows):
         while rows[row]:
             beads.append(_zigzag(rows, row, grid, borders, law, longest_link))
     return beads
@@ -505,7 +484,6 @@ def _zigzag(
     points: list[Array] = []
     shares: list[Array] = []
     while True:
-        pulse()
         found = None
         if longest_link is not None:
             found = _next(

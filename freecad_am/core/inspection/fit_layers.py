@@ -208,7 +208,7 @@ class _Course:
 
 
 def refuse_family(toolpath: Toolpath, where: str) -> None:
-    """Raise InputError NOT_YET for layers that cannot be fitted to scans."""
+    """Raise InputError NOT_YET for families whose layers cannot be fitted to scans."""
     if not toolpath.traits.fits_scans(PLANES):
         raise InputError(
             "NOT_YET",
@@ -216,13 +216,6 @@ def refuse_family(toolpath: Toolpath, where: str) -> None:
             "layers of the family {} cannot be fitted to a scan yet, only solids in planar "
             "layers and walls on a substrate; remove the scan",
             toolpath.family,
-        )
-    if toolpath.adapts_heights:
-        raise InputError(
-            "NOT_YET",
-            where,
-            "layers of adapted height cannot be fitted to a scan yet; give one "
-            "strategy.layer_height, or remove the scan",
         )
 
 
@@ -262,7 +255,7 @@ def fit_layers(
         raise InputError(
             "NO_LAYER",
             "substrate.after_layer",
-            "there is no layer above {}: the last of {} layers is {}; give a lower layer",
+            "there is no layer above {}: the last layer of {} is {}; give a lower layer",
             first_layer - 1,
             len(toolpath.layers),
             len(toolpath.layers) - 1,
@@ -373,9 +366,9 @@ def _refusing(scan: Scan, layer: int, height: float) -> Off:
             raise InputError(
                 "SCAN_MISSES",
                 scan.label,
-                "at {} of {} positions in layer {} the scan has no nearby points, first at {}; the "
-                "scan extends over {:.4g} mm, the layer over {:.4g} mm: scan the whole area below "
-                "the layer, or check unit and fit",
+                "at {} of {} places in layer {} the scan has no nearby points, first at {}; the "
+                "scan extends over {:.4g} mm, the layer over {:.4g} mm: scan the whole area "
+                "below the layer, or check unit and fit",
                 len(bare),
                 len(points),
                 layer,

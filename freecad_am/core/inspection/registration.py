@@ -336,7 +336,7 @@ def by_pairs(measured: Array, planned: Array, where: str) -> Array:
         raise InputError(
             "TOO_FEW_PAIRS",
             where,
-            "{} pairs of points are not enough; give at least three",
+            "{} pairs of points are too few; give at least three pairs",
             min(len(measured), len(planned)),
         )
     measured_centre, planned_centre = measured.mean(axis=0), planned.mean(axis=0)

@@ -294,13 +294,13 @@ def centre_line(bodies: Sequence[Body], start: Array, direction: Array, depth: f
     if first_section is None or len(bodies) > 1:
         raise _not_found(
             name,
-            "the part consists of several solids"
+            "the part is several solids"
             if len(bodies) > 1
             else "the solid has no cross-section at its base",
         )
     sections = _trace_sections(solid, first_section, direction)
     if len(sections) < 3:
-        raise _not_found(name, "the solid is too short for three sections")
+        raise _not_found(name, "the solid ends after one section")
     nodes, areas = _smooth_line(solid, sections, _Plane(start, direction))
     length = np.linalg.norm(np.diff(nodes.points, axis=0), axis=1).sum()
     volume_share = (

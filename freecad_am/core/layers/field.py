@@ -18,7 +18,7 @@ from . import guide_field as along
 from . import plane_field as planes
 from . import rotary_field as rotary
 from .guide_field import AlongCuts
-from .plane_field import Levels, PlaneLayer
+from .plane_field import PlaneLayer
 from .surface import Slice, mark_buried, report_overhangs
 
 
@@ -26,14 +26,13 @@ class Stack(NamedTuple):
     """Solids that are filled together.
 
     name: name in messages. layers: the layers of the solids. group: index of the group. solid:
-    index within the group. levels: heights of layers that adapt to the part, else None.
+    index within the group.
     """
 
     name: str
     layers: Iterable[Slice]
     group: int
     solid: int
-    levels: Levels | None = None
 
 
 def stacks(solids: SolidsOnHub, strategy: FilledParameters) -> Iterator[Stack]:
@@ -56,7 +55,6 @@ def _stacks_of_group(
     if strategy.has_curved_layers:
         yield Stack(group.bodies[0].name, curved.slices(solids, group, strategy), number, 0)
         return
-    levels = planes.find_levels(group, strategy) if strategy.adapts_heights else None
     for solid, bodies in enumerate(
         [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
     ):
@@ -64,14 +62,10 @@ def _stacks_of_group(
         if isinstance(group.base.surface, Guide):
             layers = along.slices(group.base, bodies, strategy)
         else:
-            layers = planes.slices(group.base, bodies, strategy, levels)
+            layers = planes.slices(group.base, bodies, strategy)
         name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
         yield Stack(
-            name,
-            mark_buried(report_overhangs(layers, strategy), strategy.thick),
-            number,
-            solid,
-            levels,
+            name, mark_buried(report_overhangs(layers, strategy), strategy.thick), number, solid
         )
 
 

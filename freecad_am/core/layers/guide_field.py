@@ -131,10 +131,9 @@ class AlongCuts(PlaneCuts):
                 raise InputError(
                     "GUIDE_TIGHT",
                     body.name,
-                    "the bend of the guide at {} has a smaller radius than the part is wide: "
-                    "planes normal to the guide intersect in the part, at {}; choose a guide "
-                    "nearer to the inside of the bend or with a larger radius, or strategy.layers: "
-                    "geodesic",
+                    "the guide bends more tightly at {} than the part is wide there: planes "
+                    "normal to it intersect within the part, at {}; choose a guide nearer to the "
+                    "inside of the bend or with a larger radius, or strategy.layers: geodesic",
                     base.where(guide.at(guide.distance(point[None]))[0][0]),
                     base.where(point),
                 )
@@ -261,10 +260,9 @@ def _refuse_uneven(layers: Sequence[Slice], strategy: SolidParameters) -> None:
     point = points[int(np.abs(off).argmax())]
     need = float(np.abs(off).max()) / height
     message = Text(
-        "{} of {} layers deviate from the layer height: layer {} is {:.3g} to {:.3g} mm high, with "
-        "the largest deviation from {:g} mm at {}; strategy.band allows {:.3g} %, but {:.3g} % is "
-        "needed; raise strategy.band, or choose a guide in the middle of the part or with a "
-        "gentler bend",
+        "{} of {} layers deviate from the layer height: layer {} is {:.3g} to {:.3g} mm high, "
+        "farthest off the {:g} mm at {}; strategy.band allows {:.3g} %, but {:.3g} % is needed; "
+        "raise strategy.band, or choose a guide in the middle of the part or with a gentler bend",
         len(uneven),
         len(layers),
         worst.number,

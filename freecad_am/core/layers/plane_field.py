@@ -13,13 +13,12 @@ import numpy as np
 from ..geometry.developable import Plane
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base, Group, SolidsOnHub
-from ..geometry.ramps import limit_growth
 from ..geometry.regions.region import Region
 from ..geometry.step_count import round_up
 from ..issues import InputError, Issue
 from ..parameters.filled import SolidParameters
 from ..slicing.solids.plane_sections import PlaneCuts
-from ..types import Array, Index, Mask
+from ..types import Array, Index
 from .margins import sections
 from .surface import Slice, Wrapped
 
@@ -50,11 +49,10 @@ class Flat:
 class PlaneLayer(Flat):
     """Plane at a height, mm, along the Z of its frame, a `LayerSurface`.
 
-    x and y of the plane are x and y of the frame. layer_height: mm, None if it is constant.
+    x and y of the plane are x and y of the frame.
     """
 
     height: float
-    layer_height: float | None = None
 
     def unroll(self, points: Array) -> Array:
         """Return x and y, (n, 2), mm."""
@@ -66,9 +64,8 @@ class PlaneLayer(Flat):
         points = np.column_stack([flat, np.full(count, self.height)])
         return Wrapped(points, np.tile([0.0, 0.0, 1.0], (count, 1)), np.zeros(count))
 
-    def heights(self, flat: Array) -> Array | None:
-        """Return the layer height at points, None if it is constant."""
-        return None if self.layer_height is None else np.full(len(flat), self.layer_height)
+    def heights(self, flat: Array) -> None:
+        """Return None: the layer height is constant."""
 
     def for_sheet(self, flat: Array, sheet: float) -> PlaneLayer:
         """Return this plane."""
@@ -107,57 +104,10 @@ def count(top: float, strategy: SolidParameters) -> int:
     )
 
 
-class Levels(NamedTuple):
-    """Layers that adapt their heights to the slope of a part, from the base up.
-
-    planes, heights: (k,) height of the plane of each layer above the base, and layer height, mm.
-    top: height of the part, mm. cusp: largest cusp of all layers, mm. constant: layer height, mm,
-    with which layers of one height have this cusp.
-    """
-
-    planes: Array
-    heights: Array
-    top: float
-    cusp: float
-    constant: float
-
-    def cuts(self, share: float) -> Array:
-        """Return the heights at which the part is cut.
-
-        Parameters
-        ----------
-        share : float
-            Height of the cut above the plane of a layer, as a share of its height.
-
-        Returns
-        -------
-        (k,) array
-            Heights above the base, mm.
-        """
-        return self.planes + share * self.heights
-
-    def layers_of(self, levels: Array) -> Index:
-        """Return the layers that contain heights.
-
-        Parameters
-        ----------
-        levels : (n,) array
-            Heights above the base, mm.
-
-        Returns
-        -------
-        (n,) array of int
-            Indices of layers.
-        """
-        return np.maximum(np.searchsorted(self.planes, levels, side="right") - 1, 0)
-
-
-def slices(
-    base: Base, bodies: Sequence[Body], strategy: SolidParameters, levels: Levels | None = None
-) -> Iterator[Slice]:
+def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
     """Yield the layers of bodies upwards, on planes above the base.
 
-    The planes are at 0, h, 2 h ... mm, or at levels; layers without regions are skipped.
+    The planes are at 0, h, 2 h ... mm; layers without regions are skipped.
 
     Parameters
     ----------
@@ -167,8 +117,6 @@ def slices(
         The bodies.
     strategy : SolidParameters
         Layer height, cut, margin and chord error.
-    levels : Levels or None, optional
-        Layers that adapt their heights; None for layers of one height.
 
     Yields
     ------
@@ -182,22 +130,6 @@ def slices(
     """
     cuts = [PlaneCuts(base.inside(body.vertices), body.triangles) for body in bodies]
     top = max(cut.top for cut in cuts)
-    if levels is not None:
-        for number, regions, issues in cut_together(
-            cuts, len(levels.planes), strategy, levels.cuts(strategy.share_of_cut)
-        ):
-            height = float(levels.heights[number])
-            surface = PlaneLayer(float(levels.planes[number]), height)
-            yield Slice(
-                number,
-                base,
-                surface,
-                regions,
-                issues,
-                heights=(height, height, height),
-                share_before=number / len(levels.planes),
-            )
-        return
     layers = count(top, strategy)
     if not layers:
         points = np.vstack([cut.vertices for cut in cuts])
@@ -225,10 +157,7 @@ def slices(
 
 
 def cut_together(
-    cuts: Sequence[PlaneCuts],
-    layers: int,
-    strategy: SolidParameters,
-    heights: Array | None = None,
+    cuts: Sequence[PlaneCuts], layers: int, strategy: SolidParameters
 ) -> Iterator[tuple[int, tuple[Region, ...], tuple[Issue, ...]]]:
     """Yield the regions of each layer of bodies; empty layers are skipped.
 
@@ -240,8 +169,6 @@ def cut_together(
         Number of layers.
     strategy : SolidParameters
         Layer height, cut, margin and chord error.
-    heights : (layers,) array or None, optional
-        Heights of the cuts, mm; None for layers of one height.
 
     Yields
     ------
@@ -252,10 +179,9 @@ def cut_together(
     issues : tuple of Issue
         Repairs.
     """
-    if heights is None:
-        heights = strategy.layer_height * (
-            np.arange(layers, dtype=np.float64) + strategy.share_of_cut
-        )
+    heights: Array = strategy.layer_height * (
+        np.arange(layers, dtype=np.float64) + strategy.share_of_cut
+    )
     return sections([cut.loops(_off_faces(cut, heights, strategy)) for cut in cuts], strategy)
 
 
@@ -264,246 +190,20 @@ def _off_faces(cut: PlaneCuts, heights: Array, strategy: SolidParameters) -> Arr
 
     The heights move slightly upwards, or downwards if `cut_at` is 'top'.
     """
-    aside = _clearance(cut.vertices, strategy)
+    aside = max(
+        CLEARANCE_SHARE * strategy.chord_error,
+        ROUNDING * float(np.abs(cut.vertices).max(initial=0.0)),
+    )
     corners = cut.vertices[cut.faces]
     low, high = corners[..., 2].min(axis=1), corners[..., 2].max(axis=1)
-    lying = np.sort(0.5 * (low + high)[_is_horizontal(corners, aside)])
+    size = np.ptp(corners[..., :2], axis=1).max(axis=1)
+    lying = np.sort(
+        0.5 * (low + high)[(high - low < aside) & (high - low <= MAX_RISE_SHARE * size)]
+    )
     is_near = np.searchsorted(lying, heights - aside) < np.searchsorted(
         lying, heights + aside, side="right"
     )
     return np.where(is_near, heights + (-2.0 if strategy.cut_at == "top" else 2.0) * aside, heights)
-
-
-def _clearance(vertices: Array, strategy: SolidParameters) -> float:
-    """Return the minimum clearance of a plane from coplanar faces of vertices (n, 3), mm."""
-    return max(
-        CLEARANCE_SHARE * strategy.chord_error,
-        ROUNDING * float(np.abs(vertices).max(initial=0.0)),
-    )
-
-
-def _is_horizontal(corners: Array, aside: float) -> Mask:
-    """Whether facets (m, 3, 3) count as horizontal: they rise by less than `aside`, mm."""
-    rise = np.ptp(corners[..., 2], axis=1)
-    size = np.ptp(corners[..., :2], axis=1).max(axis=1)
-    return np.asarray((rise < aside) & (rise <= MAX_RISE_SHARE * size))
-
-
-# ---- Layers that adapt their heights to the slope of the part (Dolenc and Makela 1994)
-
-CHANGE = 0.2  # fraction of a layer's height by which the next layer may differ
-STEPS, MAX_STEPS = 100, 100_000  # steps of the least height, and of the whole part at most
-HALVINGS = 50  # of the factor with which layers end at the top of the part
-
-
-class _Slopes(NamedTuple):
-    """Facets that are not horizontal: lowest and highest point (m,), mm, and |z| of their unit normals (m,).
-
-    middle: (m, 3) centroids in the frame of the base, mm.
-    """
-
-    low: Array
-    high: Array
-    flatness: Array
-    middle: Array
-
-
-def find_levels(group: Group, strategy: SolidParameters) -> Levels:
-    """Return the highest layers of a part whose cusps stay below a limit.
-
-    The cusp is the height of the step between two layers, measured normal to the surface: layer
-    height times |cos| of the angle between the surface normal and the stacking direction, at the
-    flattest facet of the layer. Horizontal facets have no steps. Heights change by at most `CHANGE`
-    from layer to layer, and all layers are lowered together so that the last ends at the top.
-
-    Parameters
-    ----------
-    group : Group
-        The bodies and their base.
-    strategy : SolidParameters
-        Least and most height, cusp and cut.
-
-    Returns
-    -------
-    Levels
-        The layers.
-
-    Raises
-    ------
-    InputError
-        TOO_LOW if no layer reaches into the bodies, CUSP if a layer of the least height has a
-        larger cusp.
-
-    References
-    ----------
-    Dolenc and Makela 1994, Slicing procedures for layered manufacturing techniques.
-    """
-    slopes, top = _slopes(group, strategy)
-    lowest = strategy.lowest_height
-    if not strategy.share_of_cut * lowest < top - EXACT * lowest:
-        raise InputError(
-            "TOO_LOW",
-            "strategy.layer_height",
-            "the least height, {:g} mm, is too high for {}, {:.4g} mm high along "
-            "strategy.direction: no layer is cut in its {}; use at most {:.3g} mm",
-            lowest,
-            ", ".join(body.name for body in group.bodies),
-            top,
-            strategy.cut_at,
-            0.99 * top / max(strategy.share_of_cut, 0.001),
-        )
-    planes, heights = _stack_layers(*_limit_heights(slopes, top, strategy), top, lowest)
-    cuts = planes + strategy.share_of_cut * heights
-    slack = EXACT * heights
-    is_cut = cuts <= top + slack if strategy.cut_at == "top" else cuts < top - slack
-    planes, heights = planes[is_cut], heights[is_cut]
-    flattest = _flattest(slopes, planes, heights)
-    cusps = np.zeros(len(planes))
-    slanted = flattest >= 0  # layers between vertical walls only meet no other facet
-    cusps[slanted] = (heights * slopes.flatness[flattest])[slanted] if slanted.any() else 0.0
-    _refuse_cusps(group.base, slopes, flattest, heights, cusps, strategy)
-    cusp, greatest = float(cusps.max()), float(slopes.flatness.max(initial=0.0))
-    constant = strategy.layer_height
-    if greatest > 0.0:
-        constant = min(constant, cusp / greatest)
-    return Levels(planes, heights, top, cusp, constant)
-
-
-def _slopes(group: Group, strategy: SolidParameters) -> tuple[_Slopes, float]:
-    """Return the slopes of the facets above the base, and the height of the part, mm."""
-    all_corners = []
-    top = 0.0
-    for body in group.bodies:
-        vertices = group.base.inside(body.vertices)
-        top = max(top, float(vertices[:, 2].max()))
-        corners = vertices[body.triangles]
-        all_corners.append(corners[~_is_horizontal(corners, _clearance(vertices, strategy))])
-    corners = np.concatenate(all_corners)
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    size = np.linalg.norm(normal, axis=1)
-    low, high = corners[..., 2].min(axis=1), corners[..., 2].max(axis=1)
-    rows = (size > 0.0) & (high > 0.0)
-    flatness = np.abs(normal[rows, 2]) / size[rows]
-    return _Slopes(low[rows], high[rows], flatness, corners[rows].mean(axis=1)), top
-
-
-def _limit_heights(slopes: _Slopes, top: float, strategy: SolidParameters) -> tuple[Array, Array]:
-    """Return levels (k,) and the permitted height (k,) of a layer that begins there, mm.
-
-    Between levels the permitted heights are linear, never above those of the facets that the layer
-    meets, and change by `CHANGE` per mm of level.
-    """
-    assert strategy.cusp is not None
-    lowest, highest = strategy.lowest_height, strategy.layer_height
-    step = max(lowest / STEPS, top / MAX_STEPS)
-    count = math.ceil(top / step - EXACT) + 1
-    with np.errstate(divide="ignore"):
-        ceiling = np.minimum(strategy.cusp / slopes.flatness, highest)
-    first = np.clip(np.floor(slopes.low / step), 0, count - 1).astype(np.intp)
-    last = np.clip(np.ceil(slopes.high / step) - 1.0, first, count - 1).astype(np.intp)
-    in_bin = _lowest_over(first, last, ceiling, count, highest)
-    permitted = in_bin.copy()
-    for ahead in range(1, int(highest / step) + 2):  # a layer may end before flatter facets begin
-        reach = (ahead - 1) * step
-        if ahead >= count or reach >= highest:
-            break
-        np.minimum(permitted[:-ahead], np.maximum(in_bin[ahead:], reach), out=permitted[:-ahead])
-    at_ends = np.minimum(np.r_[permitted[:1], permitted], np.r_[permitted, permitted[-1:]])
-    levels = step * np.arange(count + 1)
-    return levels, limit_growth(np.clip(at_ends, lowest, highest), CHANGE * levels)
-
-
-def _lowest_over(first: Index, last: Index, ceiling: Array, places: int, highest: float) -> Array:
-    """Return the lowest ceiling (m,) at each of the places; each ceiling spans `first` to `last`.
-
-    Places without a ceiling have `highest`. Each span is covered by two spans whose length is a power of
-    two, which pass their ceiling on to their halves.
-    """
-    power = np.frexp(last - first + 1)[1] - 1
-    powers = int(power.max(initial=0))
-    lowest_ceiling = np.full((powers + 1, places), highest)
-    np.minimum.at(lowest_ceiling, (power, first), ceiling)
-    np.minimum.at(lowest_ceiling, (power, last - (1 << power) + 1), ceiling)
-    for level in range(powers, 0, -1):
-        half = 1 << (level - 1)
-        np.minimum(lowest_ceiling[level - 1], lowest_ceiling[level], out=lowest_ceiling[level - 1])
-        np.minimum(
-            lowest_ceiling[level - 1, half:],
-            lowest_ceiling[level, :-half],
-            out=lowest_ceiling[level - 1, half:],
-        )
-    return np.asarray(lowest_ceiling[0])
-
-
-def _stack_layers(
-    levels: Array, permitted: Array, top: float, lowest: float
-) -> tuple[Array, Array]:
-    """Return planes and heights (k,), mm, of layers that end at the top, or less than `lowest` above it."""
-
-    def layers(factor: float, count: int | None) -> list[float]:
-        planes = [0.0]
-        while len(planes) <= count if count else planes[-1] < top - EXACT * lowest:
-            height = factor * float(np.interp(planes[-1], levels, permitted))
-            planes.append(planes[-1] + max(lowest, height))
-        return planes
-
-    planes = layers(1.0, None)
-    count = len(planes) - 1
-    low, high = 0.0, 1.0
-    for _ in range(HALVINGS):
-        factor = 0.5 * (low + high)
-        trial = layers(factor, count)
-        if trial[-1] >= top:
-            high, planes = factor, trial
-        else:
-            low = factor
-    return np.array(planes[:-1]), np.diff(planes)
-
-
-def _flattest(slopes: _Slopes, planes: Array, heights: Array) -> Index:
-    """Return the flattest facet (k,) of each layer, -1 without any."""
-    order = np.argsort(slopes.low)
-    low, high, flatness = (column[order] for column in slopes[:3])
-    ends = np.searchsorted(low, planes + (1.0 - EXACT) * heights)
-    flattest = np.full(len(planes), -1, dtype=np.intp)
-    for layer, (plane, height, end) in enumerate(zip(planes, heights, ends, strict=True)):
-        flat = np.where(high[:end] > plane + EXACT * height, flatness[:end], -1.0)
-        if len(flat) and flat.max() >= 0.0:
-            flattest[layer] = order[int(flat.argmax())]
-    return flattest
-
-
-def _refuse_cusps(
-    base: Base,
-    slopes: _Slopes,
-    flattest: Index,
-    heights: Array,
-    cusps: Array,
-    strategy: SolidParameters,
-) -> None:
-    """Raise InputError CUSP at the layer with the largest cusp if it exceeds the limit."""
-    assert strategy.cusp is not None
-    high = np.flatnonzero(cusps > strategy.cusp * (1.0 + EXACT))
-    if not len(high):
-        return
-    worst = int(cusps.argmax())
-    flatness = float(slopes.flatness[flattest[worst]])
-    raise InputError(
-        "CUSP",
-        "strategy.cusp",
-        "{:g} mm is exceeded in {} of {} layers: layer {}, {:.4g} mm high, has a step of {:.4g} mm "
-        "normal to the surface at {}; set strategy.cusp to {} mm, or the least "
-        "strategy.layer_height to {} mm",
-        strategy.cusp,
-        len(high),
-        len(heights),
-        worst,
-        heights[worst],
-        cusps[worst],
-        base.where(slopes.middle[flattest[worst]]),
-        f"{math.ceil(1e3 * cusps[worst]) / 1e3:g}",
-        f"{math.floor(1e3 * strategy.cusp / flatness) / 1e3:g}",
-    )
 
 
 # ---- Volume of a part between layer planes, for comparison with the deposited volume
@@ -527,7 +227,7 @@ def group_of(solids: SolidsOnHub) -> Group | None:
     return groups[0] if len(groups) == 1 and isinstance(groups[0].base.surface, Plane) else None
 
 
-def slabs(group: Group, layer_height: float | Array, points: Array, volumes: Array) -> Slabs:
+def slabs(group: Group, layer_height: float, points: Array, volumes: Array) -> Slabs:
     """Return the volumes of bodies and deposit in planar layers.
 
     Overlaps of bodies count twice.
@@ -536,8 +236,8 @@ def slabs(group: Group, layer_height: float | Array, points: Array, volumes: Arr
     ----------
     group : Group
         The bodies and their base.
-    layer_height : float or (l,) array
-        Layer height, or the heights of all layers, mm.
+    layer_height : float
+        Layer height, mm.
     points : (n, 3) array
         Ends of deposits on the planes, in part coordinates, mm.
     volumes : (n,) array
@@ -549,18 +249,10 @@ def slabs(group: Group, layer_height: float | Array, points: Array, volumes: Arr
         Volumes of each layer.
     """
     top = max(float(group.base.inside(body.vertices)[:, 2].max()) for body in group.bodies)
-    levels = group.base.inside(points)[:, 2]
-    if isinstance(layer_height, np.ndarray):
-        planes = np.r_[0.0, np.cumsum(layer_height)]
-        if planes[-1] < top - EXACT * float(layer_height[-1]):
-            planes = np.r_[planes, top]
-        count = len(planes) - 1
-        layer = np.searchsorted(0.5 * (planes[1:-1] + planes[:-2]), levels)
-    else:
-        layer = np.maximum(np.rint(levels / layer_height), 0).astype(np.intp)
-        used = int(layer[volumes > 0.0].max(initial=-1)) + 1
-        count = max(int(np.ceil(top / layer_height - EXACT)), used)
-        planes = layer_height * np.arange(count + 1)
+    layer = np.maximum(np.rint(group.base.inside(points)[:, 2] / layer_height), 0).astype(np.intp)
+    used = int(layer[volumes > 0.0].max(initial=-1)) + 1
+    count = max(int(np.ceil(top / layer_height - EXACT)), used)
+    planes = layer_height * np.arange(count + 1)
     part_volumes = sum(
         (
             np.diff(volumes_below(group.base.inside(body.vertices), body.triangles, planes))

@@ -214,6 +214,7 @@ def report_overhangs(slices: Iterable[Slice], strategy: SolidParameters) -> Iter
     The overhang angle is measured from the stacking direction. The issue reports the total area and
     the position of the largest region.
     """
+    reach = strategy.layer_height * math.tan(strategy.max_overhang) + strategy.chord_error
     min_area = (MIN_SIDE_SHARE * strategy.bead_spacing) ** 2
     previous: Slice | None = None
     for layer in slices:
@@ -222,8 +223,7 @@ def report_overhangs(slices: Iterable[Slice], strategy: SolidParameters) -> Iter
             over = _overhanging_regions(
                 layer,
                 previous if previous.number == layer.number - 1 else None,
-                _rise(previous, layer, strategy) * math.tan(strategy.max_overhang)
-                + strategy.chord_error,
+                reach,
                 strategy.chord_error,
                 min_area,
             )
@@ -236,7 +236,7 @@ def report_overhangs(slices: Iterable[Slice], strategy: SolidParameters) -> Iter
                         CODE,
                         Text(
                             "{:.4g} mm^2 overhang the layer below by more than {:.4g} deg, the "
-                            "largest region at {}; deposit a support first, choose another "
+                            "largest piece at {}; deposit a support first, choose another "
                             "strategy.direction, or raise strategy.max_overhang",
                             math.fsum(region.area for region in over),
                             math.degrees(strategy.max_overhang),
@@ -247,14 +247,6 @@ def report_overhangs(slices: Iterable[Slice], strategy: SolidParameters) -> Iter
                 )
         previous = layer
         yield layer._replace(issues=issues)
-
-
-def _rise(below: Slice, layer: Slice, strategy: SolidParameters) -> float:
-    """Return the distance between the cuts of two neighbouring layers, mm."""
-    if not strategy.adapts_heights or below.heights is None or layer.heights is None:
-        return strategy.layer_height
-    share = strategy.share_of_cut
-    return (1.0 - share) * below.heights[1] + share * layer.heights[1]
 
 
 def _overhanging_regions(

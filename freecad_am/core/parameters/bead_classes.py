@@ -11,8 +11,7 @@ from typing import Any, ClassVar
 
 from ..issues import InputError
 from . import field as f
-from .records import SEPARATOR, Point, Records, convert_texts, entry, split
-from .vectors import direction_text, point_text
+from .records import SEPARATOR, Records, entry, split
 
 WHERE = "process.classes"
 FIRST_LAYER, CONTOUR, FILL, CLOSING, LINK, WALL = CLASSES = (
@@ -78,58 +77,6 @@ class BeadEnd(PhaseParameters):
     """The settings at the end of beads."""
 
     where = "process.end"
-
-
-BY_ANGLE, BY_POINT, SHARPEST, SPREAD, HIDDEN = "angle", "point", "sharpest", "spread", "hidden"
-
-
-@dataclass(frozen=True)
-class SeamParameters:
-    """Where closed beads start. rad about the axis, from the X of the feature frame; mm."""
-
-    angle: float = f.parameter(0.0, f.ANGLE, "Start of closed beads.")
-    step: float = f.parameter(0.0, f.ANGLE, "Shift of the start from layer to layer.")
-    position: str = f.parameter(
-        BY_ANGLE,
-        f.CHOICE,
-        "Start of closed beads: at the angle, nearest to the point, at the sharpest corner, "
-        "spread at a distance from other starts, or hidden from a viewer.",
-        choices=(BY_ANGLE, BY_POINT, SHARPEST, SPREAD, HIDDEN),
-    )
-    point: Point | None = f.parameter(
-        None,
-        f.VECTOR,
-        "For position point: x y z in part coordinates, mm; every closed bead starts as close to "
-        "this point as possible.",
-        records=point_text("process.seam.point", "none"),
-        unit="mm",
-    )
-    away_from: Point | None = f.parameter(
-        None,
-        f.VECTOR,
-        "For position hidden: direction x y z from the part to the viewer, in part coordinates; "
-        "closed beads start on the far side.",
-        records=direction_text("process.seam.away_from", "none"),
-    )
-    distance: float = f.parameter(
-        15.0,
-        f.LENGTH,
-        "For position spread: minimum distance between the start of a closed bead and the starts "
-        "of other beads of its layer and of the layer below.",
-        low=0.0,
-        open_low=True,
-    )
-    scarf: float = f.parameter(
-        0.0,
-        f.LENGTH,
-        "Length over which the section of a closed bead rises at its start and falls at its end, "
-        "on top of the start, so that the seam has no step; 0: none.",
-        low=0.0,
-    )
-
-    def __post_init__(self) -> None:
-        convert_texts(self)
-        f.check(self, "process.seam")
 
 
 def _phase(name: str) -> Any:

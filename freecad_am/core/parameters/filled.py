@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from ..issues import InputError, Text
 from . import field as f
 from .records import Point, convert_texts
-from .strategy import LAYER_TIME, MEND, LayerParameters, LayerTimeParameters, layer_time
+from .strategy import LAYER_TIME, MEND, LayerParameters
 from .vectors import Axis, axis_text, direction_text
 
 
@@ -117,7 +117,7 @@ class FilledParameters(LayerParameters):
     spacing_range: tuple[float, float] = f.parameter(
         (1.0, 1.0),
         f.RATIO_RANGE,
-        "Range of bead widths, as a share of the nominal width and spacing, so that contours fill "
+        "Range of bead widths, as a share of the usual width and spacing, so that contours fill "
         "a region evenly and beads in thin places match its width.",
         low=0.3,
         high=2.0,
@@ -186,7 +186,6 @@ class FilledParameters(LayerParameters):
         "others are printed.",
         low=0.0,
     )
-    layer_time: LayerTimeParameters = layer_time()
     deflection: float = f.parameter(
         0.0,
         f.ANGLE,
@@ -240,8 +239,8 @@ class FilledParameters(LayerParameters):
     narrowest: float = f.parameter(
         0.3,
         f.RATIO,
-        "Minimum width of beads in planes where neighbours leave less space, as a share of their "
-        "nominal width; 100 %: beads are never narrowed, and layers get higher there.",
+        "Smallest width of beads in planes where neighbours leave less space, as a share of "
+        "their usual width; 100 %: beads are never narrowed, and layers get higher there.",
         low=0.1,
         high=1.0,
         advanced=True,
@@ -250,14 +249,14 @@ class FilledParameters(LayerParameters):
         "adaptive",
         f.CHOICE,
         "Width of contours, and of lines inside contours, in planes: adaptive beads follow the "
-        "thickness of a region if this covers the region better; fixed ones have the nominal width.",
+        "thickness of a region if this covers the region better; fixed ones have the usual width.",
         choices=("adaptive", "fixed"),
         advanced=True,
     )
     widest: float = f.parameter(
         1.5,
         f.RATIO,
-        "Maximum width of adaptive beads, as a share of their nominal width.",
+        "Greatest width of adaptive beads, as a share of their usual width.",
         low=1.0,
         high=2.0,
         advanced=True,
@@ -267,14 +266,13 @@ class FilledParameters(LayerParameters):
         if self.walls == math.inf:
             object.__setattr__(self, "walls", "inf")
         f.check(self, "strategy")
-        self.check_timing()
         object.__setattr__(self, "spacing_range", tuple(self.spacing_range))
         if not self.spacing_range[0] <= 1.0 <= self.spacing_range[1]:
             ends = Text.joined(" to ", (f"{100.0 * end:g} %" for end in self.spacing_range))
             raise InputError(
                 "BAD_VALUE",
                 "strategy.spacing_range",
-                "{} excludes 100 %, the nominal width; extend the range to include 100 %",
+                "{} excludes 100 %, the usual width; extend the range to include 100 %",
                 ends,
             )
         if self.fill_density < 1.0 and not FILLS[self.fill].can_be_sparse:
@@ -313,16 +311,6 @@ class FilledParameters(LayerParameters):
     def share_of_cut(self) -> float:
         """How many layer heights above the surface of a layer the part is cut."""
         return 0.0
-
-    @property
-    def adapts_heights(self) -> bool:
-        """Return whether layer heights follow the slope of the part."""
-        return False
-
-    @property
-    def lowest_height(self) -> float:
-        """Return the height of the lowest possible layer, mm."""
-        return self.layer_height
 
     @property
     def has_direction(self) -> bool:
@@ -422,24 +410,6 @@ class SolidParameters(FilledParameters):
         high=1.0,
         advanced=True,
     )
-    least_height: float | None = f.parameter(
-        None,
-        f.LENGTH,
-        "Height of the lowest layer; the layer height is then that of the highest layer, and each "
-        "layer of planes is as high as the cusp permits.",
-        low=0.0,
-        open_low=True,
-        optional=True,
-    )
-    cusp: float | None = f.parameter(
-        None,
-        f.LENGTH,
-        "Largest height of the steps between layers, measured normal to the surface, where layer "
-        "heights adapt to the slope of the part.",
-        low=0.0,
-        open_low=True,
-        optional=True,
-    )
     fuse: str = f.parameter(
         "auto",
         f.CHOICE,
@@ -451,64 +421,6 @@ class SolidParameters(FilledParameters):
     def __post_init__(self) -> None:
         convert_texts(self)
         super().__post_init__()
-        if self.least_height is not None or self.cusp is not None:
-            self._check_heights()
-
-    def _check_heights(self) -> None:
-        """Refuse layer heights that cannot adapt, with the remedy."""
-        lowest, highest = self.least_height, self.layer_height
-        if lowest is None:
-            raise InputError(
-                "BAD_VALUE",
-                "strategy.cusp",
-                "{:g} mm needs layers of several heights; give least and most of "
-                "strategy.layer_height",
-                self.cusp,
-            )
-        if self.cusp is None:
-            raise InputError(
-                "BAD_VALUE",
-                "strategy.layer_height",
-                "{:g} to {:g} mm needs a largest step between layers; give strategy.cusp, for "
-                "example 0.2 mm",
-                lowest,
-                highest,
-            )
-        if lowest > highest:
-            raise InputError(
-                "BAD_VALUE",
-                "strategy.layer_height",
-                "the least height, {:g} mm, is above the most, {:g} mm; give the smaller height "
-                "as least",
-                lowest,
-                highest,
-            )
-        if self.layers != PLANES:
-            raise InputError(
-                "NOT_FOR_FAMILY",
-                "strategy.cusp",
-                "layer heights adapt in plane layers only, not with layers: {}; use layers: "
-                "planes, or remove strategy.cusp and give one strategy.layer_height",
-                self.layers,
-            )
-        if self.margin:
-            raise InputError(
-                "NOT_YET",
-                "strategy.margin",
-                "{:g} mm of margin needs layers of one height; use 0 mm, or one "
-                "strategy.layer_height",
-                self.margin,
-            )
-
-    @property
-    def adapts_heights(self) -> bool:
-        """Return whether layer heights follow the slope of the part."""
-        return self.cusp is not None
-
-    @property
-    def lowest_height(self) -> float:
-        """Return the height of the lowest possible layer, mm."""
-        return self.layer_height if self.least_height is None else self.least_height
 
     @property
     def has_plane_layers(self) -> bool:

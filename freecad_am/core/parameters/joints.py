@@ -170,7 +170,7 @@ class JointParameters:
     max_iterations: int = f.parameter(
         1000,
         f.COUNT,
-        "Maximum number of iterations of the optimiser per layer.",
+        "Iterations after which the optimiser gives up on a layer.",
         low=1,
         high=1_000_000,
         advanced=True,

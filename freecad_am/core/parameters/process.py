@@ -11,9 +11,10 @@ from typing import Any
 from . import bead_classes
 from . import field as f
 from . import settings as by_place
-from .bead_classes import BeadClass, BeadEnd, BeadStart, SeamParameters
-from .records import convert_texts
+from .bead_classes import BeadClass, BeadEnd, BeadStart
+from .records import Point, convert_texts
 from .settings import Setting
+from .vectors import direction_text, point_text
 
 # what each of several features may have of its own, with _ for nested keys; the rest holds for the whole program
 OF_FEATURE = (
@@ -38,6 +39,58 @@ IN_PROCESS = (
     "lead_off",
     "weave",
 )  # class attributes that replace a key of the process
+
+
+BY_ANGLE, BY_POINT, SHARPEST, SPREAD, HIDDEN = "angle", "point", "sharpest", "spread", "hidden"
+
+
+@dataclass(frozen=True)
+class SeamParameters:
+    """Where closed beads start. rad about the axis, from the X of the feature frame; mm."""
+
+    angle: float = f.parameter(0.0, f.ANGLE, "Start of closed beads.")
+    step: float = f.parameter(0.0, f.ANGLE, "Shift of the start from layer to layer.")
+    position: str = f.parameter(
+        BY_ANGLE,
+        f.CHOICE,
+        "Start of closed beads: at the angle, nearest to the point, at the sharpest corner, "
+        "spread at a distance from other starts, or hidden from a viewer.",
+        choices=(BY_ANGLE, BY_POINT, SHARPEST, SPREAD, HIDDEN),
+    )
+    point: Point | None = f.parameter(
+        None,
+        f.VECTOR,
+        "For position point: x y z in part coordinates, mm; every closed bead starts at its "
+        "place nearest to this point.",
+        records=point_text("process.seam.point", "none"),
+        unit="mm",
+    )
+    away_from: Point | None = f.parameter(
+        None,
+        f.VECTOR,
+        "For position hidden: direction x y z from the part to the viewer, in part coordinates; "
+        "closed beads start on the far side.",
+        records=direction_text("process.seam.away_from", "none"),
+    )
+    distance: float = f.parameter(
+        15.0,
+        f.LENGTH,
+        "For position spread: least distance between the start of a closed bead and the starts of "
+        "other beads of its layer and of the layer below.",
+        low=0.0,
+        open_low=True,
+    )
+    scarf: float = f.parameter(
+        0.0,
+        f.LENGTH,
+        "Length over which the section of a closed bead rises at its start and falls at its end, "
+        "on top of the start, so that the seam has no step; 0: none.",
+        low=0.0,
+    )
+
+    def __post_init__(self) -> None:
+        convert_texts(self)
+        f.check(self, "process.seam")
 
 
 @dataclass(frozen=True)
@@ -148,7 +201,7 @@ class MaterialParameters:
     slowest: float | None = f.parameter(
         None,
         f.SPEED,
-        "Minimum travel speed for the material; slower beads are reported.",
+        "Slowest travel speed for the material; slower beads are reported.",
         low=0.0,
         open_low=True,
         optional=True,
@@ -157,7 +210,7 @@ class MaterialParameters:
     fastest: float | None = f.parameter(
         None,
         f.SPEED,
-        "Maximum travel speed for the material; faster beads are reported.",
+        "Fastest travel speed for the material; faster beads are reported.",
         low=0.0,
         open_low=True,
         optional=True,
@@ -285,8 +338,8 @@ class ProcessParameters:
     settings: tuple[Setting, ...] = f.parameter(
         (),
         f.RECORDS,
-        "Settings by place; later entries override earlier ones, and all override bead classes. "
-        "Example: layers 0 to 4: travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.",
+        "Settings by place; later ones win, and all win over bead classes, such as: layers 0 to 4: "
+        "travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.",
         records=by_place.SETTINGS,
     )
 
@@ -352,22 +405,12 @@ class ProcessParameters:
         ProcessParameters
             The process of the class, with the values of the settings; later ones win.
         """
-        values = self.values_at_place(active)
-        process = self.for_class(name)
-        for section in ("wire", "seam"):
-            keys = [key for key in values if key.startswith(f"{section}_")]
-            nested = {key.removeprefix(f"{section}_"): values.pop(key) for key in keys}
-            if nested:
-                values[section] = dataclasses.replace(getattr(self, section), **nested)
-        return dataclasses.replace(process, **values) if values else process
-
-    def values_at_place(self, active: int) -> dict[str, Any]:
-        """Return the values of settings by place, by field; of several, the last. active: sum of 2^entry."""
         values: dict[str, Any] = {}
         # a motion that is stale may have more of them
         for number in by_place.entries_of(active & (1 << len(self.settings)) - 1):
             values |= self.settings[number].own_values()
-        return values
+        process = self.for_class(name)
+        return dataclasses.replace(process, **values) if values else process
 
     @property
     def weaves(self) -> bool:

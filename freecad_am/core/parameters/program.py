@@ -60,8 +60,7 @@ class NcParameters:
     wire_output: int = f.parameter(
         1,
         f.COUNT,
-        "Analogue output for the wire speed, if the wire feed follows the travel speed or "
-        "differs by place.",
+        "Analogue output for the wire speed, if the wire feed follows the travel speed.",
         low=1,
         high=64,
     )

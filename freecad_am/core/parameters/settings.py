@@ -12,52 +12,22 @@ from typing import Any
 from ..issues import InputError
 from . import bead_classes
 from . import field as f
-from .records import SEPARATOR, Point, Records, entry, numbers, split
+from .records import SEPARATOR, Records, entry, numbers, split
 
 WHERE = "settings"
-UNUSED_CODE = "SETTING_UNUSED"  # the issue of a setting that changes nothing
 MAX_SETTINGS = 52  # the places of a row are the bits of one float
-SEAM_KEYS = ("angle", "step", "position", "point", "away_from", "distance")  # of `process.seam`
-SECTIONS = ("process", "strategy", "build_direction")  # of an entry, besides its place
-# the values of an entry by their key in a job
-JOB_KEYS = {
-    "process.travel_speed": "travel_speed",
-    "process.schedule": "schedule",
-    "process.weave": "weave",
-    "process.lead_on": "lead_on",
-    "process.lead_off": "lead_off",
-    "process.wire.feed": "wire_feed",
-    **{f"process.seam.{key}": f"seam_{key}" for key in SEAM_KEYS},
+VALUE_KEYS = ("travel_speed", "schedule", "weave", "lead_on", "lead_off")  # of the process
+# sections of an entry with the keys that they may have, and those that are not supported yet
+SECTIONS = {"process": VALUE_KEYS, "strategy": (), "build_direction": ()}
+FUTURE_KEYS = {
+    "process": ("wire", "seam"),
+    "strategy": ("fill", "fill_angle", "fill_density", "walls", "narrowest", "widest"),
+    "build_direction": ("lead", "tilt"),
 }
-VALUE_KEYS = tuple(JOB_KEYS.values())
-# sections, and keys, that no entry can have yet
-FUTURE_KEYS = (
-    "process.seam.scarf",
-    *(
-        f"strategy.{key}"
-        for key in ("fill", "fill_angle", "fill_density", "walls", "narrowest", "widest")
-    ),
-    "build_direction.lead",
-    "build_direction.tilt",
-)
-SPECS = {
-    **{name: bead_classes.SPECS[name] for name in VALUE_KEYS if name in bead_classes.SPECS},
-    "wire_feed": f.Spec(
-        f.SPEED,
-        "Wire feed; auto: the feed for the bead width and layer height at the travel speed.",
-        low=0.0,
-        words=("auto",),
-        optional=True,
-    ),
-    **{
-        f"seam_{field.name}": dataclasses.replace(f.spec_of(field), optional=True)
-        for field in dataclasses.fields(bead_classes.SeamParameters)
-        if field.name in SEAM_KEYS
-    },
-}
+SPECS = {name: bead_classes.SPECS[name] for name in VALUE_KEYS}
 _FORM = (
-    "write, for example: layers 0 to 4: travel_speed 4, schedule 3; height 20 to 35 and inside "
-    "Zone: lead_on 0.5; box 0 0 0 10 20 30: weave 2; faces Face7 Face8 within 8: travel_speed 5"
+    "write it as in: layers 0 to 4: travel_speed 4, schedule 3; height 20 to 35 and inside Zone: "
+    "lead_on 0.5; box 0 0 0 10 20 30: weave 2; faces Face7 Face8 within 8: travel_speed 5"
 )
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _RANGE = rf"(?:from\s+)?(?P<low>{_NUMBER})?(?:\s*to\s+(?P<high>{_NUMBER}))?"
@@ -97,31 +67,20 @@ class Setting:
     weave: int | None = _value("weave")
     lead_on: float | None = _value("lead_on")
     lead_off: float | None = _value("lead_off")
-    wire_feed: float | str | None = _value("wire_feed")
-    seam_angle: float | None = _value("seam_angle")
-    seam_step: float | None = _value("seam_step")
-    seam_position: str | None = _value("seam_position")
-    seam_point: Point | None = _value("seam_point")
-    seam_away_from: Point | None = _value("seam_away_from")
-    seam_distance: float | None = _value("seam_distance")
 
     def __post_init__(self) -> None:
         # JSON has lists
         object.__setattr__(self, "faces", tuple(self.faces))
         if self.box is not None:
             object.__setattr__(self, "box", tuple(float(number) for number in self.box))
-        for name in ("seam_point", "seam_away_from"):
-            records = SPECS[name].records
-            assert records is not None
-            object.__setattr__(self, name, records.read(getattr(self, name)))
         self._check_ranges()
         self._check_zones()
         if not self.conditions():
             raise _wrong("where", "it has no condition; give layers, height, inside or faces")
         if not self.own_values():
-            raise _wrong("process", "it sets nothing; give one of {}", ", ".join(JOB_KEYS))
-        for key, name in JOB_KEYS.items():
-            f.check_value(SPECS[name], getattr(self, name), f"{WHERE}.{key}")
+            raise _wrong("process", "it sets nothing; give one of {}", ", ".join(VALUE_KEYS))
+        for key, value in self.own_values().items():
+            f.check_value(SPECS[key], value, f"{WHERE}.process.{key}")
 
     def _check_ranges(self) -> None:
         for key, low, high in (
@@ -194,18 +153,8 @@ class Setting:
             yield f"faces {' '.join(self.faces)} within {self.within:.12g}"
 
     def __str__(self) -> str:
-        values = (
-            f"{key} {_value_text(SPECS[key], value)}" for key, value in self.own_values().items()
-        )
+        values = (f"{key} {value:.12g}" for key, value in self.own_values().items())
         return f"{' and '.join(self.conditions())}: {', '.join(values)}"
-
-
-def _value_text(spec: f.Spec, value: Any) -> str:
-    if isinstance(value, str):
-        return value
-    if isinstance(value, tuple):
-        return numbers(value)
-    return f"{value / f.TO_INNER.get(spec.kind, 1.0):.12g}"
 
 
 def _wrong(key: str, message: str, *values: Any) -> InputError:
@@ -225,7 +174,7 @@ def _parse_one(text: str) -> Setting:
     for condition in re.split(r"\s+and\s+", where):
         fields = _condition(condition)
         if fields.keys() & values.keys():
-            raise _wrong("where", "{!r} repeats a condition; give each condition once", where)
+            raise _wrong("where", "{!r} has a condition twice; give it once", where)
         values |= fields
     for value in filter(str.strip, values_text.split(",")):
         key, _, number = value.strip().partition(" ")
@@ -237,23 +186,18 @@ def _parse_one(text: str) -> Setting:
                 key,
                 ", ".join(SPECS),
             )
-        values[key] = _parse_value(key, number.strip(), value)
+        values[key] = _number(key, number, value)
     return Setting(**values)
 
 
-def _parse_value(key: str, number: str, text: str) -> float | str:
-    spec = SPECS[key]
-    if number in spec.words or spec.kind in (f.CHOICE, f.VECTOR):
-        return number
+def _number(key: str, number: str, text: str) -> float:
     try:
         value = float(number)
     except ValueError:
         raise InputError(
             "BAD_VALUE", WHERE, "{!r} has no number; {}", text.strip(), _FORM
         ) from None
-    if spec.kind == f.COUNT and value.is_integer():
-        return int(value)
-    return value * f.TO_INNER.get(spec.kind, 1.0)
+    return int(value) if SPECS[key].kind == f.COUNT and value.is_integer() else value
 
 
 def _condition(text: str) -> dict[str, Any]:
@@ -299,7 +243,7 @@ def check_number(settings: Sequence[Setting]) -> None:
         raise InputError(
             "BAD_VALUE",
             WHERE,
-            "there are {} entries; use at most {}, for instance wider ranges of layers",
+            "{} entries are too many; use at most {}, for instance wider ranges of layers",
             len(settings),
             MAX_SETTINGS,
         )

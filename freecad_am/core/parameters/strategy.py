@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 from ..geometry.curves import gcode, gcode_roles
 from ..issues import InputError
@@ -51,63 +50,6 @@ MOST_LAYERS = (
 )
 
 
-WAIT, SLOW, BOTH = "wait", "slow", "both"
-
-
-@dataclass(frozen=True)
-class LayerTimeParameters:
-    """How a layer takes its minimum time. s, mm/s."""
-
-    least: float = f.parameter(
-        0.0,
-        f.TIME,
-        "Minimum time of a layer, from the start of its first bead to the start of the next layer; "
-        "0: none.",
-        low=0.0,
-    )
-    by: str = f.parameter(
-        WAIT,
-        f.CHOICE,
-        "How short layers take longer: the machine waits after them, they are deposited more slowly "
-        "at the same volume per length, or both: slowly, and the machine waits for the rest.",
-        choices=(WAIT, SLOW, BOTH),
-    )
-    slowest: float | None = f.parameter(
-        None,
-        f.SPEED,
-        "Slowest travel speed of slowed layers; none: the slowest speed of the material or of the "
-        "bead model, which are limits in any case.",
-        low=0.0,
-        open_low=True,
-        optional=True,
-    )
-
-    def __post_init__(self) -> None:
-        f.check(self, "strategy.layer_time")
-        if self.least == 0.0 and self.by != WAIT:
-            raise InputError(
-                "BAD_VALUE",
-                "strategy.layer_time.by",
-                "{} has no effect on layers without a minimum time; set strategy.layer_time.least",
-                self.by,
-            )
-
-    @property
-    def slows(self) -> bool:
-        """Whether layers are slowed."""
-        return self.least > 0.0 and self.by != WAIT
-
-    @property
-    def to_wait(self) -> float:
-        """Minimum time of a layer that is reached by waiting only, s; 0 for none."""
-        return 0.0 if self.slows else self.least
-
-
-def layer_time() -> Any:
-    """Return the field of the minimum time of layers, for the body of a dataclass."""
-    return f.group(LayerTimeParameters, "Minimum time of a layer, by waiting or by slow beads.")
-
-
 @dataclass(frozen=True)
 class LayerParameters:
     """The layer settings of all families. mm."""
@@ -124,27 +66,6 @@ class LayerParameters:
         low=1e-5,
         high=10.0,
     )
-
-    @property
-    def timing(self) -> LayerTimeParameters:
-        """The minimum time of layers; `min_layer_time` is one by waiting."""
-        minimum: LayerTimeParameters = getattr(self, "layer_time", LayerTimeParameters())
-        by_waiting: float = getattr(self, "min_layer_time", 0.0)
-        return LayerTimeParameters(by_waiting) if by_waiting > 0.0 else minimum
-
-    def check_timing(self) -> None:
-        """Raise InputError BAD_VALUE if two parameters give a minimum time of layers."""
-        minimum: LayerTimeParameters = getattr(self, "layer_time", LayerTimeParameters())
-        by_waiting: float = getattr(self, "min_layer_time", 0.0)
-        if minimum.least > 0.0 and by_waiting > 0.0:
-            raise InputError(
-                "BAD_VALUE",
-                "strategy.min_layer_time",
-                "strategy.layer_time.least, {:g} s, and strategy.min_layer_time, {:g} s, both give "
-                "the minimum time of a layer; remove min_layer_time",
-                minimum.least,
-                by_waiting,
-            )
 
     @property
     def has_curved_layers(self) -> bool:
@@ -188,11 +109,9 @@ class RevolutionParameters(LayerParameters):
         advanced=True,
     )
     min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
-    layer_time: LayerTimeParameters = layer_time()
 
     def __post_init__(self) -> None:
         f.check(self, "strategy")
-        self.check_timing()
 
 
 @dataclass(frozen=True)
@@ -226,7 +145,7 @@ class SurfaceParameters(LayerParameters):
     bead_turn: float = f.parameter(
         math.radians(6.0),
         f.TURN_RATE,
-        "Maximum turn of a bead within the wall in smooth layers, if the band allows it.",
+        "Turn of the bead within the wall that smooth layers stay below if the band allows.",
         low=0.0,
         open_low=True,
     )
@@ -250,11 +169,9 @@ class SurfaceParameters(LayerParameters):
     )
     mend: float = f.parameter(5.0, f.LENGTH, MEND, low=0.0, high=10000.0, advanced=True)
     min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
-    layer_time: LayerTimeParameters = layer_time()
 
     def __post_init__(self) -> None:
         f.check(self, "strategy", skip=frozenset({"compare"}))
-        self.check_timing()
         object.__setattr__(self, "compare", tuple(self.compare))
         for spacing in self.compare:
             if spacing not in SPACINGS:
@@ -304,12 +221,10 @@ class CurvesParameters(LayerParameters):
         advanced=True,
     )
     min_layer_time: float = f.parameter(0.0, f.TIME, f"{LAYER_TIME}.", low=0.0)
-    layer_time: LayerTimeParameters = layer_time()
 
     def __post_init__(self) -> None:
         convert_texts(self)
         f.check(self, "strategy")
-        self.check_timing()
         if not gcode_roles.split_entries(self.roles):
             raise InputError(
                 "BAD_VALUE",

@@ -55,7 +55,7 @@ def select_movable(settings: CellParameters, moves: str) -> str:
         raise InputError(
             "NOT_FOR_SETUP",
             "place.moves",
-            "with {} the placement cannot move {}; use {}",
+            "with {} the part is not placed by {}; use {}",
             settings.setup,
             moves,
             Text.joined(" or ", available) or "another set-up",

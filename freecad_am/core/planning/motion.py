@@ -16,7 +16,7 @@ from ..parameters.bead_classes import number_of
 from ..parameters.joints import JointParameters
 from ..parameters.process import ProcessParameters
 from ..program import SHORTEST_RAPID
-from ..toolpath import settings_of, wire_of
+from ..toolpath import settings_of
 from ..types import Array, Integers
 from . import nozzle_obstacles
 from .arm_clearance import Cylinders
@@ -180,6 +180,7 @@ def _deposit(path: BeadPath) -> _Rows:
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     duration = np.concatenate([[0.0], length / bead.speed[1:]])
     width = np.full(len(bead), np.nan) if bead.width is None else bead.width
+    wire = np.full(len(bead), np.nan) if bead.wire_share is None else bead.wire_share * bead.speed
     return _Rows(
         np.full(len(bead), DEPOSIT),
         *_place(path),
@@ -190,7 +191,7 @@ def _deposit(path: BeadPath) -> _Rows:
         width,
         path.joints,
         duration,
-        wire_of(bead),
+        wire,
         np.zeros(len(bead)) if bead.phase is None else bead.phase,
         turns_back(bead),
         settings_of(bead),

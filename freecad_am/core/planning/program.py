@@ -149,14 +149,10 @@ def _ranges(moves: Sequence[Moves]) -> list[str]:
     if not beads:
         return []
     wires = [run.wire for run in beads if run.wire is not None]
-    speeds = np.concatenate([run.speed for run in beads])
-    lines = [f"Travel speed {_range(speeds)} mm/s"]
-    if not wires:
-        return lines
-    wire = np.concatenate(wires)
-    # feeds by place do not follow the speed
-    follows = len(wire) == len(speeds) and np.allclose(wire / speeds, wire[0] / speeds[0])
-    return [*lines, f"Wire {'in proportion to it ' if follows else ''}{_range(wire)} mm/s"]
+    return [
+        f"Travel speed {_range(np.concatenate([run.speed for run in beads]))} mm/s",
+        *([f"Wire in proportion to it {_range(np.concatenate(wires))} mm/s"] if wires else []),
+    ]
 
 
 def _range(values: Array) -> str:

@@ -136,7 +136,7 @@ def _searched(
                         NOTE,
                         REMEDY,
                         Text(
-                            "with {} the {} affected layers are feasible when planned again; the "
+                            "with {} the {} affected layers planned again are feasible; the "
                             "whole job was not tested",
                             change.remedy,
                             count,

@@ -273,7 +273,7 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
         ),
         Promise(
             "The predicted deposit has the volume of the wire fed",
-            "volume of the cubes, compared with wire section x feed x time, or with the nominal "
+            "volume of the cubes against wire section x feed x time, or against the nominal "
             "volume of the beads if no wire is set",
             off <= MAX_VOLUME_ERROR,
             PERCENT * off,

@@ -184,7 +184,7 @@ def rapids(issues: Sequence[Issue], rapids_check: RapidsLooked) -> Promise:
     """Return the promise that the nozzle stays clear on rapids."""
     collisions = select_issues(issues, RAPIDS)
     how = Text(
-        "retracts, travels and approaches simulated again, at {} positions {} mm apart, against "
+        "retracts, travels and approaches simulated again, at {} places {} mm apart, against "
         "obstacles, platform and beads with their width and height at that time",
         rapids_check.places,
         number(rapids_check.step),

@@ -427,11 +427,7 @@ def _alike(radius: Array, speed: Array, equivalent: Array) -> str:
             "all beads have the same wire length per millimetre; measure at least two speeds at "
             "one wire feed"
         )
-    text = (
-        Text.joined(", and ", same)
-        if same
-        else Text("speed and radius change only together, so their effects cannot be separated")
-    )
+    text = Text.joined(", and ", same) if same else Text("speeds and radii vary only together")
     return Text(
         "{}; measure at least two speeds{}", text, Word("" if straight else " and two radii")
     )
@@ -469,7 +465,7 @@ def check_speeds(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
         raise InputError(
             "BAD_VALUE",
             "process.material.slowest",
-            "{:g} mm/s exceeds the maximum speed, {:g} mm/s; give a slower speed",
+            "{:g} mm/s is above the fastest speed, {:g} mm/s; give a slower speed",
             slowest,
             fastest,
         )

@@ -17,7 +17,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..parameters.process import ProcessParameters
-from ..progress import pulse_each
 from ..toolpath import Bead, Layer
 from ..types import Array, Index
 
@@ -97,7 +96,7 @@ class IslandOrder:
             return []
         starts = StartPoints(np.array([beads[island[0]].points[0] for island in islands]))
         ordered: list[Bead] = []
-        for _ in pulse_each(islands):
+        for _ in islands:
             island = islands[starts.take(self.point)]
             ordered += [beads[number] for number in island]
             self.point = ordered[-1].points[-1]

@@ -79,37 +79,12 @@ def refuse_speeds(process: ProcessParameters) -> None:
         for number, setting in enumerate(process.settings)
         if setting.travel_speed is not None
     ]
-    _refuse_wire_feeds(process)
     if named and process.bead_model != "none":
         raise InputError(
             "NOT_FOR_FAMILY",
             f"{named[0]}.travel_speed",
             "the bead model sets the travel speed of every bead; remove the travel speed, or use "
             "bead_model: none",
-        )
-
-
-def _refuse_wire_feeds(process: ProcessParameters) -> None:
-    """Raise InputError NOT_FOR_FAMILY if places set the wire feed although the speed decides it."""
-    number = next(
-        (k for k, entry in enumerate(process.settings) if entry.wire_feed is not None), None
-    )
-    if number is None:
-        return
-    where = f"settings[{number}].process.wire.feed"
-    if process.bead_model != "none":
-        raise InputError(
-            "NOT_FOR_FAMILY",
-            where,
-            "the bead model is for one wire feed; remove the wire feed of the place, or use "
-            "bead_model: none",
-        )
-    if process.wire.feed_mode != "constant":
-        raise InputError(
-            "NOT_FOR_FAMILY",
-            where,
-            "process.wire.feed_mode: proportional makes the wire feed follow the travel speed; "
-            "use constant, or remove the wire feed of the place",
         )
 
 

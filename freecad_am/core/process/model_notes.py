@@ -56,7 +56,7 @@ def segments(beads: Sequence[Bead]) -> Segments:
         np.concatenate([0.5 * (height[1:] + height[:-1]) for _, _, height in modelled]),
         np.concatenate(
             [
-                (np.nan if bead.wire_share is None else bead.wire_share[1:]) * speeds
+                (np.nan if bead.wire_share is None else bead.wire_share) * speeds
                 for (bead, _, _), speeds in zip(modelled, speed)
             ]
         ),
@@ -150,7 +150,7 @@ def height_issue(
         Text(
             "{}beads are predicted {:.3g} to {:.3g} mm high, {:.3g} mm on average, for layers of "
             "{:g} mm{}{}",
-            Word("at the speed that the axes reach, " if as_run else ""),
+            Word("limited to the speed of the axes, " if as_run else ""),
             height["min"],
             height["max"],
             height["mean"],
@@ -534,8 +534,7 @@ def at_speed(
     widths, heights, wire_share = model.widths(speed, radius), model.heights(speed, radius), None
     if process.wire.feed_mode == "proportional":
         heights = model.heights_of_section(widths, process.bead_width)
-        share = model_wire_feed(process, model) / model.straight_speed(process.bead_width)
-        wire_share = np.full(len(bead), share)
+        wire_share = model_wire_feed(process, model) / model.straight_speed(process.bead_width)
     sized_bead = replace(
         bead, speed=segment_speeds(speed), width=widths, height=heights, wire_share=wire_share
     )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -19,21 +19,19 @@ from ..geometry.frames import unit
 from ..geometry.ramps import MIN_STEP, STEPS
 from ..geometry.step_count import round_down
 from ..issues import WARNING, InputError, Issue, Text
-from ..parameters.bead_classes import (
+from ..parameters.process import (
     BY_ANGLE,
     BY_POINT,
     HIDDEN,
     SHARPEST,
     SPREAD,
+    ProcessParameters,
     SeamParameters,
 )
-from ..parameters.process import ProcessParameters
-from ..parameters.settings import UNUSED_CODE
 from ..toolpath import Bead, Scarf, Toolpath
-from ..types import Array, Integers, Mask
+from ..types import Array, Mask
 
 NO_EFFECT = "NO_EFFECT"
-SEAM = "process.seam"  # the section of the job
 SNAP_MM = 0.01  # mm; maximum distance at which a seam moves to an existing point of the bead
 EQUAL_MM = 1e-6  # mm; places at distances that differ less are equally near
 EQUAL_RAD = math.radians(1.0)  # corners whose turns differ less are equally sharp
@@ -247,31 +245,6 @@ def _farthest_arc(
     return arc
 
 
-LocateAngle = Callable[[_Loop, float], SeamLocation]
-
-
-def locate_azimuth(loop: _Loop, angle: float) -> SeamLocation:
-    """Return the place at an azimuth, rad, of a bead whose parameter is the azimuth about its axis."""
-    azimuth = loop.bead.parameter
-    sense = 1.0 if azimuth[-1] > azimuth[0] else -1.0
-    turned = sense * (azimuth - azimuth[0])
-    target = (sense * (angle - azimuth[0])) % (2.0 * math.pi)
-    segment = int(np.clip(np.searchsorted(turned, target, "right") - 1, 0, len(azimuth) - 2))
-    share = (target - turned[segment]) / (turned[segment + 1] - turned[segment])
-    return loop.snapped(segment, float(np.clip(share, 0.0, 1.0)))
-
-
-def locate_farthest(frame: Array) -> LocateAngle:
-    """Return the rule by which beads start farthest out in a direction from the X of a frame (4, 4)."""
-
-    def locate(loop: _Loop, angle: float) -> SeamLocation:
-        out = math.cos(angle) * frame[:3, 0] + math.sin(angle) * frame[:3, 1]
-        level = loop.bead.points[:-1] @ out
-        return SeamLocation(int(np.argmax(level >= level.max() - EQUAL_MM)), 0.0)
-
-    return locate
-
-
 # ---- Layers in print order
 
 
@@ -282,19 +255,9 @@ class SeamPlacer:
     from the start that `process.seam.angle` gives. Spread starts move on counter-clockwise from layer to layer.
     """
 
-    def __init__(
-        self,
-        seam: SeamParameters,
-        chord_error: float,
-        bead_width: float,
-        locate_angle: LocateAngle | None = None,
-    ) -> None:
-        """Create the placer; chord error and bead width in mm.
-
-        locate_angle: rule for `process.seam.angle`; None leaves these beads as they are.
-        """
+    def __init__(self, seam: SeamParameters, chord_error: float, bead_width: float) -> None:
+        """Create the placer; chord error and bead width in mm."""
         self._seam = seam
-        self._locate_angle = locate_angle
         self._tolerance = chord_error
         self._bead_width = bead_width
         self._below: Array = np.zeros((0, 3))
@@ -314,9 +277,7 @@ class SeamPlacer:
         """Forget the layer below."""
         self._below = self._starts_below = np.zeros((0, 3))
 
-    def choose_locations(
-        self, beads: Sequence[Bead], layer: int, movable: Mask | None = None
-    ) -> list[SeamLocation]:
+    def choose_locations(self, beads: Sequence[Bead], layer: int) -> list[SeamLocation]:
         """Return the start of each bead of a layer; START for open beads.
 
         Parameters
@@ -325,8 +286,6 @@ class SeamPlacer:
             Beads of the layer, the layer above those of the previous call.
         layer : int
             Index of the layer, for messages.
-        movable : (n,) bool array, optional
-            Closed beads whose start may change, if not all; START for the rest.
 
         Returns
         -------
@@ -335,13 +294,9 @@ class SeamPlacer:
         """
         locations = []
         starts: list[Array] = []
-        moves = [
-            bead.closed and (movable is None or bool(movable[number]))
-            for number, bead in enumerate(beads)
-        ]
-        open_starts = [bead.points[0] for bead, move in zip(beads, moves) if not move]
-        for bead, move in zip(beads, moves):
-            if not move:
+        open_starts = [bead.points[0] for bead in beads if not bead.closed]
+        for bead in beads:
+            if not bead.closed:
                 locations.append(START)
                 continue
             loop = _Loop(bead)
@@ -356,8 +311,6 @@ class SeamPlacer:
 
     def _locate(self, loop: _Loop, starts_nearby: Array, layer: int) -> SeamLocation:
         seam = self._seam
-        if seam.position == BY_ANGLE and self._locate_angle is not None:
-            return self._locate_angle(loop, seam.angle + layer * seam.step)
         if seam.position == SPREAD:
             return self._locate_apart(loop, np.vstack([starts_nearby, self._starts_below]), layer)
         if seam.position == BY_POINT:
@@ -442,9 +395,9 @@ class SeamPlacer:
                     WARNING,
                     "SEAM_DISTANCE",
                     Text(
-                        "{} closed bead(s) in {} layer(s) start less than process.seam.distance, "
-                        "{:g} mm, from another start, at worst {:.3g} mm in layer {}; use a "
-                        "smaller distance",
+                        "{} closed bead(s) in {} layer(s) start nearer than process.seam.distance, "
+                        "{:g} mm, to another start, at worst {:.3g} mm in layer {}; use a smaller "
+                        "distance",
                         len(self._short),
                         len({number for _, number in self._short}),
                         seam.distance,
@@ -463,7 +416,7 @@ class SeamPlacer:
                     NO_EFFECT,
                     Text(
                         "process.seam.position: sharpest has no effect: no closed bead turns by "
-                        "{:.3g} deg or more at a point; the beads start at process.seam.angle",
+                        "{:.3g} deg or more at a point; the beads start by process.seam.angle",
                         math.degrees(CORNER),
                     ),
                 )
@@ -474,9 +427,9 @@ class SeamPlacer:
                     WARNING,
                     "SEAM_SIDE",
                     Text(
-                        "{} closed bead(s) are normal to process.seam.away_from, so they have no "
-                        "hidden side and start at process.seam.angle; choose a direction along the "
-                        "layers",
+                        "{} closed bead(s) are in a plane across process.seam.away_from without "
+                        "a hidden side, and start by process.seam.angle; choose a direction "
+                        "along the layers",
                         self._without,
                     ),
                 )
@@ -534,102 +487,10 @@ def place_seams(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     )
 
 
-def place_seams_by_place(
-    toolpath: Toolpath,
-    process: ProcessParameters,
-    active: Integers,
-    locate_angle: LocateAngle | None,
-) -> Toolpath:
-    """Return the toolpath with closed beads that start where the settings of their place say.
-
-    Parameters
-    ----------
-    toolpath : Toolpath
-        The toolpath, whose beads start where `process.seam` says.
-    process : ProcessParameters
-        Process with settings by place.
-    active : (n,) int array
-        Sums of 2^entry of the settings that hold for each bead, in print order.
-    locate_angle : callable or None
-        Rule for starts by angle; None if the beads have none.
-
-    Returns
-    -------
-    Toolpath
-        The toolpath, with issues about these seams.
-
-    Raises
-    ------
-    InputError
-        BAD_VALUE for a position without its parameter, NOT_FOR_FAMILY for an angle without a rule.
-    """
-    setters = sum(1 << k for k in range(len(process.settings)) if _seam_keys(process, k))
-    active = active & setters
-    closed = np.array([bead.closed for _, _, bead in toolpath])
-    firsts = np.cumsum([0, *(len(layer.beads) for layer in toolpath.layers)])
-    for combination in np.unique(active[active > 0]).tolist():
-        seam, number = process.at_place("", combination).seam, combination.bit_length() - 1
-        where = f"settings[{number}].process.seam"
-        check_parameters(seam, where)
-        if seam.position == BY_ANGLE and locate_angle is None:
-            raise InputError(
-                "NOT_FOR_FAMILY",
-                f"{where}.position",
-                "angles of seams vary by place only for parts of revolution and plane layers; use "
-                "position: point, sharpest, spread or hidden",
-            )
-        movable = active == combination
-        placer = SeamPlacer(seam, toolpath.chord_error, process.bead_width, locate_angle)
-        layers = []
-        for index, layer in enumerate(toolpath.layers):
-            if layer.first:
-                placer.begin_stack()
-            own_beads = movable[firsts[index] : firsts[index + 1]]
-            locations = placer.choose_locations(layer.beads, index, own_beads)
-            beads = tuple(map(start_bead, layer.beads, locations))
-            layers.append(dataclasses.replace(layer, beads=beads))
-        toolpath = dataclasses.replace(
-            toolpath,
-            layers=tuple(layers),
-            issues=(
-                *toolpath.issues,
-                *placer.issues(),
-                *unused_issues(toolpath, seam, where, _seam_keys(process, number)),
-            ),
-        )
-    return dataclasses.replace(
-        toolpath, issues=(*toolpath.issues, *_unmet_issues(process, active, closed))
-    )
-
-
-def _seam_keys(process: ProcessParameters, number: int) -> list[str]:
-    """Return the keys of `process.seam` that an entry sets."""
-    values = process.settings[number].own_values()
-    return [key.removeprefix("seam_") for key in values if key.startswith("seam_")]
-
-
-def _unmet_issues(process: ProcessParameters, active: Integers, closed: Mask) -> list[Issue]:
-    """Return warnings about entries whose seams no closed bead has."""
-    met_settings = int(np.bitwise_or.reduce(active[closed])) if closed.any() else 0
-    return [
-        Issue(
-            WARNING,
-            UNUSED_CODE,
-            Text(
-                "the seam of settings[{}] has no effect, because no closed bead has at least "
-                "half of its length in its place; enlarge the place, or remove the seam",
-                number,
-            ),
-        )
-        for number in range(len(process.settings))
-        if _seam_keys(process, number) and not met_settings >> number & 1
-    ]
-
-
 # ---- Parameters that do not fit the rule or the beads
 
 
-def check_parameters(seam: SeamParameters, where: str = SEAM) -> None:
+def check_parameters(seam: SeamParameters) -> None:
     """Raise InputError BAD_VALUE if the parameter that a position needs is missing."""
     for position, value, key, example in (
         (BY_POINT, seam.point, "point", "[40, 0, 0]"),
@@ -638,7 +499,7 @@ def check_parameters(seam: SeamParameters, where: str = SEAM) -> None:
         if seam.position == position and value is None:
             raise InputError(
                 "BAD_VALUE",
-                f"{where}.{key}",
+                f"process.seam.{key}",
                 "position: {} needs a value; give three numbers such as {}, or choose another "
                 "position",
                 position,
@@ -660,12 +521,7 @@ def check_distance(toolpath: Toolpath, seam: SeamParameters) -> None:
         )
 
 
-def unused_issues(
-    toolpath: Toolpath,
-    seam: SeamParameters,
-    where: str = SEAM,
-    keys: Collection[str] | None = None,
-) -> list[Issue]:
+def unused_issues(toolpath: Toolpath, seam: SeamParameters) -> list[Issue]:
     """Return warnings about parameters that change nothing.
 
     Parameters
@@ -674,10 +530,6 @@ def unused_issues(
         The toolpath.
     seam : SeamParameters
         The parameters of the seam.
-    where : str, optional
-        The section that sets them.
-    keys : collection of str, optional
-        The keys that the section sets; None for those that differ from their defaults.
 
     Returns
     -------
@@ -697,23 +549,17 @@ def unused_issues(
             WARNING,
             NO_EFFECT,
             Text(
-                "{}.{} has no effect with process.seam.position: {}; remove the key, or use "
-                "position: {}",
-                where,
+                "process.seam.{} has no effect with process.seam.position: {}; remove the key, "
+                "or use position: {}",
                 key,
                 seam.position,
                 positions[0],
             ),
         )
         for key, positions in used.items()
-        if (getattr(seam, key) != getattr(usual, key) if keys is None else key in keys)
-        and seam.position not in positions
+        if getattr(seam, key) != getattr(usual, key) and seam.position not in positions
     ]
-    if (
-        keys is None
-        and seam.position != BY_ANGLE
-        and not any(bead.closed for _, _, bead in toolpath)
-    ):
+    if seam.position != BY_ANGLE and not any(bead.closed for _, _, bead in toolpath):
         issues.append(
             Issue(
                 WARNING,
@@ -813,8 +659,8 @@ def _scarf_issues(short: Sequence[int], process: ProcessParameters) -> list[Issu
                 WARNING,
                 "SEAM_SCARF",
                 Text(
-                    "{} closed bead(s) in {} layer(s) are shorter than two scarfs of {:g} mm, so "
-                    "they have no scarf; use a shorter process.seam.scarf",
+                    "{} closed bead(s) in {} layer(s) are shorter than two scarfs of {:g} mm and "
+                    "have none; use a shorter process.seam.scarf",
                     len(short),
                     len(set(short)),
                     process.seam.scarf,
@@ -851,6 +697,6 @@ def _refuse_other_speeds(process: ProcessParameters) -> None:
         raise InputError(
             "BAD_VALUE",
             SCARF,
-            "process.start or process.end sets a travel speed that the scarf sets too; remove the "
+            "process.start or process.end sets the travel speed where the scarf does; remove the "
             "scarf, or their travel_speed",
         )

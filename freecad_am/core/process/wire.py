@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -29,8 +28,7 @@ class Taken(NamedTuple):
     """Deposition rate of the beads of one class in one phase, with the same settings by place.
 
     phase: one of PHASES. rate: mm3/s. layer, bead: indices of the first occurrence. section: mean
-    cross-section, mm2. settings: sum of 2^entry. fed: mean length of wire per length of bead if the wire
-    feed follows the travel speed, else 0.
+    cross-section, mm2. settings: sum of 2^entry.
     """
 
     bead_class: str
@@ -40,7 +38,6 @@ class Taken(NamedTuple):
     bead: int
     section: float
     settings: int = 0
-    fed: float = 0.0
 
     @property
     def name(self) -> str:
@@ -83,42 +80,31 @@ def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int
     tuple of (float, int, int) or None
         Deviation, layer and bead; None if wire feed or bead width is unknown.
     """
-    deviations = [
-        (
-            abs(
-                (
-                    process.wire.section * rate_of_class.fed / rate_of_class.section
-                    if rate_of_class.fed
-                    else wire_rate / rate_of_class.rate
-                )
-                - 1.0
-            ),
-            rate_of_class.layer,
-            rate_of_class.bead,
-        )
-        for rate_of_class in taken_of(toolpath)
-        if by_wire(rate_of_class, process)
-        and (wire_rate := process.wire.section * _feed_of(rate_of_class, toolpath, process)) > 0.0
+    wire_rate = (toolpath.wire_feed or 0.0) * process.wire.section
+    by_wire_ = [
+        rate_of_class for rate_of_class in taken_of(toolpath) if by_wire(rate_of_class, process)
     ]
-    return max(deviations, key=lambda deviation: deviation[0], default=None)
-
-
-def _feed_of(rate_of_class: Taken, toolpath: Toolpath, process: ProcessParameters) -> float:
-    """Return the wire feed of a class at its place, mm/s; 0 without wire."""
-    feed = _place_feed(rate_of_class.bead_class, rate_of_class.settings, toolpath, process)
-    return (toolpath.wire_feed or 0.0) if feed is None else feed
-
-
-def _place_feed(
-    name: str, active: int, toolpath: Toolpath, process: ProcessParameters
-) -> float | None:
-    """Return the wire feed that settings by place give, mm/s; None if they give none."""
-    feed = process.values_at_place(active).get("wire_feed")
-    if not isinstance(feed, str):
-        return feed
-    speed = process.at_place(name, active).travel_speed
-    section = (toolpath.bead_width or 0.0) * toolpath.layer_height
-    return section * speed / process.wire.section
+    if not by_wire_ or wire_rate == 0.0:
+        return None
+    follows = follows_speed(toolpath)  # mm3 per mm
+    return max(
+        (
+            (
+                abs(
+                    (
+                        wire_rate / process.travel_speed / rate_of_class.section
+                        if follows
+                        else wire_rate / rate_of_class.rate
+                    )
+                    - 1.0
+                ),
+                rate_of_class.layer,
+                rate_of_class.bead,
+            )
+            for rate_of_class in by_wire_
+        ),
+        key=lambda deviation: deviation[0],
+    )
 
 
 def follows_speed(toolpath: Toolpath) -> bool:
@@ -140,26 +126,19 @@ def taken_of(toolpath: Toolpath) -> list[Taken]:
             bead, toolpath.bead_width * toolpath.layer_height, toolpath
         ).items():
             key = bead.role.bead_class, phase, active
-            sums[key] = sums.get(key, np.zeros(4)) + sum_
+            sums[key] = sums.get(key, np.zeros(3)) + sum_
             first_bead.setdefault(key, (layer, number))
     return [
-        Taken(
-            *key[:2],
-            float(volume / time),
-            *first_bead[key],
-            float(volume / length),
-            key[2],
-            float(wire / length),
-        )
-        for key, (volume, time, length, wire) in sums.items()
+        Taken(*key[:2], float(volume / time), *first_bead[key], float(volume / length), key[2])
+        for key, (volume, time, length) in sums.items()
         if time > 0.0
     ]
 
 
 def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[tuple[int, int], Array]:
-    """Return sums (4,) of a bead by phase and settings by place.
+    """Return volume, mm3, time, s, and length, mm, (3,) of a bead by phase and settings by place.
 
-    They are volume, mm3, time, s, length, mm, and length of wire that follows the speed, mm. Before the phase of each segment is planned, they are derived from the lengths of the bead ends.
+    Before the phase of each segment is planned, they are derived from the lengths of the bead ends.
     """
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     section: Array | float = usual
@@ -169,8 +148,7 @@ def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[tuple[int, int],
             np.full(len(bead), toolpath.bead_width) if bead.width is None else bead.width
         )
         section = 0.5 * (area[1:] + area[:-1])
-    share = np.zeros(len(length)) if bead.wire_share is None else bead.wire_share[1:]
-    amounts = np.stack([section * length, length / bead.speed[1:], length, share * length])
+    amounts = np.stack([section * length, length / bead.speed[1:], length])
     if bead.phase is not None or bead.settings is not None:
         phases = np.full(len(length), MIDDLE) if bead.phase is None else bead.phase[1:].astype(int)
         kinds = np.stack([phases, settings_of(bead)[1:].astype(int)])
@@ -182,7 +160,7 @@ def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[tuple[int, int],
 
 
 def _sums_before_planning(bead: Bead, amounts: Array) -> dict[int, Array]:
-    """Return the sums of `_sums` by phase of a bead without phases. amounts: (4, n) of its segments."""
+    """Return the sums of `_sums` by phase of a bead without phases. amounts: (3, n) of its segments."""
     total, length = amounts.sum(axis=1), amounts[2]
     ends = bead.ends
     if ends is None:
@@ -199,16 +177,15 @@ def _sums_before_planning(bead: Bead, amounts: Array) -> dict[int, Array]:
                 0.0,
                 float((long / len(steps) / steps).sum()) - total[1] * long / size,
                 0.0,
-                0.0,
             ]
     for phase, long, speed in (
         (AT_START, ends.start_length, ends.start_speed),
         (AT_END, ends.end_length, ends.end_speed),
     ):
         if long:
-            sums[phase] = total * (long / size)
-            if speed:
-                sums[phase][1] = long / speed
+            sums[phase] = np.array(
+                [total[0] * long / size, long / speed if speed else total[1] * long / size, long]
+            )
     return sums
 
 
@@ -226,10 +203,7 @@ def model_wire_feed(process: ProcessParameters, model: BeadModel) -> float:
 
 
 def set_wire_feed(
-    toolpath: Toolpath,
-    process: ProcessParameters,
-    model: BeadModel | None,
-    is_slowed: bool = False,
+    toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None
 ) -> Toolpath:
     """Return the toolpath with its wire feed.
 
@@ -245,8 +219,6 @@ def set_wire_feed(
         Wire, bead width and travel speed.
     model : BeadModel or None
         Bead model that sets the speeds, if any.
-    is_slowed : bool, optional
-        Whether layers will be slowed, so that the wire feed has to follow.
 
     Returns
     -------
@@ -262,10 +234,8 @@ def set_wire_feed(
     bead_rate = width * height * speed
     balanced = bead_rate / process.wire.section
     if isinstance(process.wire.feed, str):
-        fed_path = _following(replace(toolpath, wire_feed=balanced), process, is_slowed)
-        return _check_classes(_by_place(fed_path, process), process)
-    fed_path = _following(replace(toolpath, wire_feed=process.wire.feed), process, is_slowed)
-    fed_path = _by_place(fed_path, process)
+        return _check_classes(_following(replace(toolpath, wire_feed=balanced), process), process)
+    fed_path = _following(replace(toolpath, wire_feed=process.wire.feed), process)
     wire_rate = process.wire.feed * process.wire.section
     if (
         wire_rate == 0.0
@@ -311,75 +281,22 @@ def _fills(toolpath: Toolpath, wire_rate: float) -> bool:
     return abs(wire_rate * seconds - deposited) <= TOLERANCE * deposited
 
 
-def _following(toolpath: Toolpath, process: ProcessParameters, is_slowed: bool) -> Toolpath:
+def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     """Return the toolpath with a wire feed that follows the travel speed, if applicable.
 
-    This needs the feed mode `proportional`, and beads with ramps or slowed layers. For stepped speeds a schedule gives
-    the feed. Where the width of a bead differs, the feed is nominal at the speed for this width.
+    This needs the feed mode `proportional` and beads with ramps. For stepped speeds a schedule gives the feed.
     """
     ramped = any(bead.ends is not None and bead.ends.has_ramps for _, _, bead in toolpath)
-    if (
-        process.wire.feed_mode != "proportional"
-        or not toolpath.wire_feed
-        or not (ramped or is_slowed)
-    ):
+    if process.wire.feed_mode != "proportional" or not toolpath.wire_feed or not ramped:
         return toolpath
     share = toolpath.wire_feed / process.travel_speed
     return replace(
         toolpath,
         layers=tuple(
-            replace(
-                layer,
-                beads=tuple(
-                    replace(bead, wire_share=share * (_usual_speeds(bead, process) / bead.speed))
-                    for bead in layer.beads
-                ),
-            )
+            replace(layer, beads=tuple(replace(bead, wire_share=share) for bead in layer.beads))
             for layer in toolpath.layers
         ),
     )
-
-
-def _by_place(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
-    """Return the toolpath with the wire feeds of settings by place, where any of them holds."""
-    places = [settings_of(bead).astype(int) for _, _, bead in toolpath]
-    combinations = np.unique(np.concatenate(places)).tolist() if places else []
-    if not any("wire_feed" in process.values_at_place(active) for active in combinations):
-        return toolpath
-    nominal = toolpath.wire_feed or 0.0
-    feeds_of_class: dict[str, dict[int, float]] = {}
-    for _, _, bead in toolpath:
-        name = bead.role.bead_class
-        if name not in feeds_of_class:
-            feeds = {
-                active: _place_feed(name, active, toolpath, process) for active in combinations
-            }
-            feeds_of_class[name] = {
-                active: nominal if feed is None else feed for active, feed in feeds.items()
-            }
-    return replace(
-        toolpath,
-        layers=tuple(
-            replace(
-                layer,
-                beads=tuple(
-                    replace(bead, wire_feeds=feeds_of_class[bead.role.bead_class])
-                    for bead in layer.beads
-                ),
-            )
-            for layer in toolpath.layers
-        ),
-    )
-
-
-def _usual_speeds(bead: Bead, process: ProcessParameters) -> Array:
-    """Return the travel speeds (n,) of the class and the places of a bead, without those for its width."""
-    combinations, index = np.unique(settings_of(bead).astype(int), return_inverse=True)
-    speeds = [
-        process.at_place(bead.role.bead_class, active).travel_speed
-        for active in combinations.tolist()
-    ]
-    return np.asarray(np.array(speeds)[np.ravel(index)])
 
 
 def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
@@ -388,20 +305,14 @@ def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     Classes and phases with a separate schedule are not checked.
     """
     wire_rate = (toolpath.wire_feed or 0.0) * process.wire.section
-    if not _at_other_speeds(process) or follows_speed(toolpath):
+    if wire_rate == 0.0 or not _at_other_speeds(process) or follows_speed(toolpath):
         return toolpath
-    all_off = [
-        (rate_of_class, rate)
+    off = [
+        rate_of_class
         for rate_of_class in taken_of(toolpath)
         if by_wire(rate_of_class, process)
-        and (rate := process.wire.section * _feed_of(rate_of_class, toolpath, process)) > 0.0
-        and abs(rate - rate_of_class.rate) > TOLERANCE * rate_of_class.rate
+        and abs(wire_rate - rate_of_class.rate) > TOLERANCE * rate_of_class.rate
     ]
-    off_by_place = [entry for entry in all_off if _sets_feed(entry[0], process)]
-    toolpath = replace(
-        toolpath, issues=(*toolpath.issues, *_place_issues(off_by_place, process.wire.section))
-    )
-    off = [rate_of_class for rate_of_class, _ in all_off if not _sets_feed(rate_of_class, process)]
     if not off:
         return toolpath
     text = ", ".join(f"{rate_of_class.name} {rate_of_class.rate:.4g}" for rate_of_class in off)
@@ -427,37 +338,10 @@ def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     )
 
 
-def _sets_feed(rate_of_class: Taken, process: ProcessParameters) -> bool:
-    return "wire_feed" in process.values_at_place(rate_of_class.settings)
-
-
-def _place_issues(off: Sequence[tuple[Taken, float]], section: float) -> list[Issue]:
-    """Return warnings about places whose wire feed is unbalanced. section: of the wire, mm2."""
-    return [
-        Issue(
-            WARNING,
-            CODE,
-            Text(
-                "{}: the wire feeds {:.4g} mm3/s, but the beads need {:.4g} mm3/s at their travel "
-                "speed; set the wire feed of the place to {:.4g} mm/s or to auto, or correct its "
-                "travel speed",
-                rate_of_class.name,
-                rate,
-                rate_of_class.rate,
-                rate_of_class.rate / section,
-            ),
-            rate_of_class.layer,
-            rate_of_class.bead,
-        )
-        for rate_of_class, rate in off
-    ]
-
-
 def _at_other_speeds(process: ProcessParameters) -> bool:
-    """Whether any class, phase or place has a separate travel speed, or a place its own wire feed."""
+    """Whether any class or phase has a separate travel speed."""
     named = [process, *(process.for_class(name) for name in CLASSES)]
-    keys = {key for setting in process.settings for key in setting.own_values()}
-    if keys & {"travel_speed", "wire_feed"}:
+    if any(setting.travel_speed is not None for setting in process.settings):
         return True
     return any(
         settings.travel_speed != process.travel_speed or settings.start.there or settings.end.there

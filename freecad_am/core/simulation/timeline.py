@@ -16,7 +16,7 @@ import numpy as np
 from ..motion import Motion
 from ..parameters.bead_classes import CLASSES, number_of
 from ..parameters.process import ProcessParameters
-from ..toolpath import Toolpath, settings_of, wire_of
+from ..toolpath import Toolpath, settings_of
 from ..types import Array, ArrayLike, Integers, Mask
 
 
@@ -50,7 +50,7 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
     # the width of a segment is the mean of the widths at its ends
     mean_width = 0.5 * (width + np.concatenate([width[:1], width[:-1]]))
     height: Array | float = toolpath.layer_height
-    if toolpath.features or toolpath.adapts_heights or toolpath.checks.fitted is not None:
+    if toolpath.features or toolpath.checks.fitted is not None:
         height = (
             _mean_heights(toolpath)
             if toolpath.checks.fitted is not None
@@ -126,7 +126,12 @@ def deposit_motion(toolpath: Toolpath, axes: int = 0) -> Motion:
         ),
         joints=np.full((len(position), axes), np.nan),
         duration=np.where(point > 0, step / speed, 0.0),
-        wire=np.concatenate([wire_of(bead) for _, _, bead in beads]),
+        wire=np.concatenate(
+            [
+                np.full(len(b), np.nan) if b.wire_share is None else b.wire_share * b.speed
+                for _, _, b in beads
+            ]
+        ),
         bead_class=np.repeat([number_of(bead.role.bead_class) for _, _, bead in beads], sizes),
         settings=np.concatenate([settings_of(bead) for _, _, bead in beads]).astype(np.int64),
     )
@@ -300,52 +305,6 @@ def _between_layers(motion: Motion, process: ProcessParameters, waits: Sequence[
 
 
 # ---- Statistics of a motion by bead class, and totals of a job
-
-
-def figures_by_layer(times: Timeline, toolpath: Toolpath) -> list[dict[str, Any]] | None:
-    """Return time, speed and wait of each layer, where the minimum layer time changed any.
-
-    Parameters
-    ----------
-    times : Timeline
-        Times of the motion of the toolpath.
-    toolpath : Toolpath
-        Waits and slowing of its layers.
-
-    Returns
-    -------
-    list of dict or None
-        For each layer with beads: `time_s` from its first deposit to that of the next layer, of the
-        last layer to its end; `speed_mm_s`, mean of its beads, and `usual_mm_s` without slowing;
-        `wait_s` before the next layer. None if no layer is slowed and none waits.
-    """
-    if not any(layer.slowing > 1.0 or layer.wait > 0.0 for layer in toolpath.layers):
-        return None
-    rows = np.flatnonzero(times.motion.deposit)
-    layers = times.motion.layer[rows]
-    starts = np.flatnonzero(np.diff(layers, prepend=-1))
-    end_rows = np.append(rows[starts[1:]], rows[-1])
-    dark = times.waits - times.lit
-    figures = []
-    for start_row, end_row in zip(rows[starts].tolist(), end_rows.tolist(), strict=True):
-        number = int(times.motion.layer[start_row])
-        is_last = end_row == rows[-1]
-        span = slice(start_row, end_row + 1)
-        moves = times.motion.deposit[span] & times.motion.moves[span]
-        moves &= times.motion.layer[span] == number
-        seconds = times.motion.duration[span][moves]
-        speed = float((times.motion.speed[span][moves] * seconds).sum() / seconds.sum())
-        figures.append(
-            {
-                "layer": number,
-                "time_s": float((times.leave if is_last else times.arrive)[end_row])
-                - float(times.arrive[start_row]),
-                "speed_mm_s": speed,
-                "usual_mm_s": speed * toolpath.layers[number].slowing,
-                "wait_s": 0.0 if is_last else float(dark[start_row:end_row].sum()),
-            }
-        )
-    return figures
 
 
 def figures_by_class(motion: Motion, process: ProcessParameters) -> list[dict[str, Any]]:

@@ -11,10 +11,10 @@ import numpy as np
 from ..motion import Motion
 from ..parameters.bead_classes import CLASSES
 from ..parameters.settings import deciding_entry
-from ..types import Array, Integers, NDArray
+from ..types import Integers, NDArray
 
 HEADER = "layer,bead,point,kind,x_mm,y_mm,z_mm,bx,by,bz,tx,ty,tz,speed_mm_s,width_mm"
-WIRE, HEIGHT = "wire_feed_mm_s", "height_mm"
+WIRE = "wire_feed_mm_s"
 _LENGTH, _DIRECTION, _ANGLE = 6, 9, 7  # decimals
 _ROWS_AT_ONCE = 4000
 CLASS, SETTING = "class", "setting"
@@ -26,12 +26,11 @@ def text(
     axes: tuple[str, ...] = (),
     units: tuple[str, ...] = (),
     by_place: bool = False,
-    layer_heights: Array | None = None,
 ) -> Iterator[str]:
     """Yield the file in pieces.
 
-    If the wire follows the travel speed, the wire speed is the column after the axes, and the layer
-    height follows if it varies. The next column is the bead class, empty if unknown. With settings by place, the last column is the
+    If the wire follows the travel speed, the wire speed is the column after the axes. The next
+    column is the bead class, empty if unknown. With settings by place, the last column is the
     number of the setting that decided, empty for none.
 
     Parameters
@@ -44,8 +43,6 @@ def text(
         Units of these columns: 'mm' for prismatic axes, 'deg' for revolute axes; 'deg' by default.
     by_place : bool, optional
         Whether the job has settings by place.
-    layer_heights : (layers,) array or None, optional
-        Heights of layers that adapt to the part, mm; None for layers of one height.
 
     Yields
     ------
@@ -59,12 +56,7 @@ def text(
     """
     units = units or ("deg",) * len(axes)
     wire = has_wire(motion)
-    last_columns = [
-        *([WIRE] if wire else []),
-        *([] if layer_heights is None else [HEIGHT]),
-        CLASS,
-        *([SETTING] if by_place else []),
-    ]
+    last_columns = [*([WIRE] if wire else []), CLASS, *([SETTING] if by_place else [])]
     yield (
         ",".join(
             (
@@ -76,9 +68,7 @@ def text(
         + "\n"
     )
     for start in range(0, len(motion), _ROWS_AT_ONCE):
-        yield _rows(
-            motion, units, wire, by_place, layer_heights, slice(start, start + _ROWS_AT_ONCE)
-        )
+        yield _rows(motion, units, wire, by_place, slice(start, start + _ROWS_AT_ONCE))
 
 
 def has_wire(motion: Motion) -> bool:
@@ -86,18 +76,8 @@ def has_wire(motion: Motion) -> bool:
     return bool(np.isfinite(motion.wire).any())
 
 
-def _rows(
-    motion: Motion,
-    units: tuple[str, ...],
-    wire: bool,
-    by_place: bool,
-    layer_heights: Array | None,
-    rows: slice,
-) -> str:
-    """Format rows as text.
-
-    `wire` adds the wire speed, `layer_heights` the layer height, `by_place` the number of the setting.
-    """
+def _rows(motion: Motion, units: tuple[str, ...], wire: bool, by_place: bool, rows: slice) -> str:
+    """Format rows as text; `wire` adds the wire speed, `by_place` the number of the setting."""
     slides = np.array([unit == "mm" for unit in units])
     angles = np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows]))
     columns: list[tuple[NDArray[Any], int | None]] = [
@@ -112,7 +92,6 @@ def _rows(
         (motion.width[rows], _LENGTH),
         *((column, _ANGLE) for column in angles.T),
         *([(motion.wire[rows], _LENGTH)] if wire else []),
-        *([] if layer_heights is None else [(layer_heights[motion.layer[rows]], _LENGTH)]),
         (_CLASS_NAMES[motion.bead_class[rows]], None),
         *([(_setting_numbers(motion.settings[rows]), None)] if by_place else []),
     ]

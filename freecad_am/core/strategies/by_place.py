@@ -21,10 +21,11 @@ from ..geometry.mesh.triangle_mesh import closest, cut_evenly
 from ..geometry.obstacles import Body
 from ..issues import WARNING, InputError, Issue, Text
 from ..parameters.process import ProcessParameters
-from ..parameters.settings import UNUSED_CODE, WHERE, Setting
+from ..parameters.settings import WHERE, Setting
 from ..toolpath import Bead, Toolpath
 from ..types import Array, Index, Integers, Mask
 
+UNUSED_CODE = "SETTING_UNUSED"
 SURFACE_MM = 1e-4  # mm; points this close to the surface of a solid belong to it
 EXACT_MM = 1e-6  # mm; tolerance of boxes, heights and distances
 MIN_PIECE_MM = 2.5e-3  # mm; a shorter piece would be a move that no controller resolves
@@ -321,26 +322,8 @@ def _conditions(segments: _Segments, setting: Setting, zone: Zone) -> list[_Cond
     return conditions
 
 
-class Stack(NamedTuple):
-    """How layers are counted, and heights measured.
-
-    up: (3,) unit vector of the stacking direction, part coordinates. numbers: (n,) numbers of the
-    layers in a job of several features, None for one. ground: height zero along up, mm; None for
-    the lowest point of the toolpath.
-    """
-
-    up: Array
-    numbers: Index | None = None
-    ground: float | None = None
-
-
-def lowest_point(toolpath: Toolpath, up: Array) -> float:
-    """Return the lowest height of all points along up (3,), mm."""
-    return min(float((bead.points @ up).min()) for _, _, bead in toolpath)
-
-
 def apply_settings(
-    toolpath: Toolpath, process: ProcessParameters, zones: Sequence[Zone], stack: Stack
+    toolpath: Toolpath, process: ProcessParameters, zones: Sequence[Zone], up: Array
 ) -> Toolpath:
     """Return the toolpath with beads cut where settings by place change, at the speeds of their places.
 
@@ -352,8 +335,8 @@ def apply_settings(
         The process with its settings by place.
     zones : sequence of Zone
         The geometry of each setting; empty if no setting has any.
-    stack : Stack
-        Stacking direction, and the numbers of the layers.
+    up : (3,) array
+        Unit vector of the stacking direction, part coordinates.
 
     Returns
     -------
@@ -368,51 +351,15 @@ def apply_settings(
     """
     if not process.settings:
         return toolpath
-    spans, active = _find_places(_segments(toolpath, stack), toolpath, process, zones)
-    return _cut_toolpath(toolpath, process, spans, active)
-
-
-def prevailing_settings(
-    toolpath: Toolpath, process: ProcessParameters, zones: Sequence[Zone], stack: Stack
-) -> Integers:
-    """Return the settings that hold on at least half of the length of each bead.
-
-    Parameters
-    ----------
-    toolpath, process, zones, stack
-        As in `apply_settings`, which raises the same errors.
-
-    Returns
-    -------
-    (n,) int array
-        Sums of 2^entry, by bead in print order.
-    """
-    segments = _segments(toolpath, stack)
-    spans, active = _find_places(segments, toolpath, process, zones)
-    counts = [len(bead) - 1 for _, _, bead in toolpath]
-    bead = np.repeat(np.arange(len(counts)), counts)[spans.row]
-    size = lengths(segments.end - segments.start)[spans.row] * (spans.end - spans.begin)
-    total = np.bincount(bead, size, len(counts))
-    prevailing = np.zeros(len(counts), dtype=np.int64)
-    for number in range(len(process.settings)):
-        inside = np.bincount(bead, size * (active >> number & 1), len(counts))
-        prevailing |= (inside >= 0.5 * total - EXACT_MM).astype(np.int64) << number
-    return prevailing
-
-
-def _find_places(
-    segments: _Segments, toolpath: Toolpath, process: ProcessParameters, zones: Sequence[Zone]
-) -> tuple[_Spans, Integers]:
-    """Return the pieces of all segments, and for each piece (k,) the sum of 2^entry of its settings."""
+    beads = [bead for _, _, bead in toolpath]
+    segments = _segments(toolpath, up)
     zones = zones or (Zone(),) * len(process.settings)
     conditions = [
         _conditions(segments, setting, zone)
         for setting, zone in zip(process.settings, zones, strict=True)
     ]
     own_speeds = [setting.travel_speed or 0.0 for setting in process.settings]
-    speeds = np.concatenate(
-        [np.maximum(bead.speed[1:], max(own_speeds)) for _, _, bead in toolpath]
-    )
+    speeds = np.concatenate([np.maximum(bead.speed[1:], max(own_speeds)) for bead in beads])
     spans = _divide_segments(
         segments, [condition for group in conditions for condition in group], speeds
     )
@@ -424,21 +371,20 @@ def _find_places(
             rows = np.flatnonzero(holds)
             holds[rows] = condition.holds(spans.row[rows], middles[rows])
         active |= holds.astype(np.int64) << number
-    return spans, active
+    return _cut_toolpath(toolpath, process, spans, active)
 
 
-def _segments(toolpath: Toolpath, stack: Stack) -> _Segments:
+def _segments(toolpath: Toolpath, up: Array) -> _Segments:
     beads = list(toolpath)
     points = [bead.points for _, _, bead in beads]
     counts = [len(bead) - 1 for _, _, bead in beads]
-    numbers = np.arange(len(toolpath.layers)) if stack.numbers is None else stack.numbers
     return _Segments(
         np.concatenate([rows[:-1] for rows in points]),
         np.concatenate([rows[1:] for rows in points]),
-        np.repeat(numbers[[layer for layer, _, _ in beads]], counts),
+        np.repeat([layer for layer, _, _ in beads], counts),
         np.concatenate([bead.build[1:] for _, _, bead in beads]),
-        stack.up,
-        lowest_point(toolpath, stack.up) if stack.ground is None else stack.ground,
+        up,
+        min(float((rows @ up).min()) for rows in points),
     )
 
 

@@ -28,10 +28,10 @@ from ..process.bead_model import BeadModel
 from ..process.bead_order import IslandOrder, RankedBead, order_beads
 from ..process.cooling_waits import add_waits
 from ..process.seams import SeamPlacer
-from ..progress import Progress, silent
 from ..toolpath import Checks, MotionRules, Toolpath
 from ..types import Array
 from . import helix
+from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of, layer_volumes, start_beads, twice_volume
 from .solids.filling import Filled, Pictures, bead_width, over_fed, spaced
 from .solids.notes import notes
@@ -316,7 +316,7 @@ def plan(
         order_beads(ranked, strategy.order),
         strategy.wait,
         process.rapid_speed,
-        strategy.timing.to_wait,
+        strategy.min_layer_time,
     )
     noted = [
         note

@@ -16,10 +16,10 @@ from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import CurvesParameters
 from ..process import classes
-from ..progress import Progress, silent
 from ..slicing.wall_directions import lean_tool
 from ..toolpath import Bead, BeadRole, Layer, MotionRules, Toolpath
 from ..types import Array
+from .progress import Progress, silent
 
 ALONG = np.cos(
     np.radians(5.0)

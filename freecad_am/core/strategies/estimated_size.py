@@ -209,7 +209,7 @@ def solids_size(
                 )  # grown by the margin
                 * height
                 / max(height + depth, 1e-9)
-                / strategy.lowest_height
+                / strategy.layer_height
                 / spacing
             )
             if isinstance(group.base.surface, Plane):
@@ -228,7 +228,7 @@ def solids_size(
                 squares += length / spacing
         layers += (
             sum(heights) if strategy.order == "feature" else max(heights, default=0.0)
-        ) / strategy.lowest_height
+        ) / strategy.layer_height
         if strategy.has_curved_layers:
             nodes += volume / step_of(volume, strategy.layer_height) ** 3
     return Size(layers, points, squares, nodes, beads=beads)
@@ -252,7 +252,7 @@ def _plane_size(
     if strategy.rounds_alone:
         # contours shrink evenly to the middle, so their mean length is half of the border's
         return INNER_FACTOR * length * corners / sides, 2.0 * length * height / sides
-    around = sides / strategy.lowest_height  # mm, one wall in all layers
+    around = sides / strategy.layer_height  # mm, one wall in all layers
     walls = min(strategy.rounds * around, length)
     chord = (
         math.pi * length * strategy.bead_spacing / around
@@ -260,7 +260,7 @@ def _plane_size(
     lines = max(length - walls, 0.0) / chord
     along_border = walls / around + (LINKED_SHARE if strategy.fill == "zigzag" else 0.0)
     a_line = POINTS_A_TAPERED_LINE if strategy.adapts_widths else POINTS_A_LINE
-    points = along_border * corners / strategy.lowest_height + a_line * lines
+    points = along_border * corners / strategy.layer_height + a_line * lines
     return points, lines + walls * height / sides
 
 

@@ -284,7 +284,7 @@ def trace_profile(sheet: PatchWall, axis: Axis, spacing: float) -> tuple[Array, 
     Raises
     ------
     InputError
-        NOT_REVOLVED if the profile does not run from rim to rim.
+        NOT_REVOLVED if the profile does not lead from rim to rim.
     """
     rotation, origin = axis.frame[:3, :3], axis.frame[:3, 3]
     ends = (
@@ -299,7 +299,7 @@ def trace_profile(sheet: PatchWall, axis: Axis, spacing: float) -> tuple[Array, 
     around = rotation[:, 1]
     while float(np.linalg.norm(end - points[-1])) > 1.5 * step:
         if len(points) > MOST_STEPS:
-            raise _not_revolved(sheet, "the profile of the faces does not run from rim to rim")
+            raise _not_revolved(sheet, "the profile of the faces does not lead from rim to rim")
         along = np.cross(point_normals[-1], around)
         if len(points) == 1:
             along *= np.sign(along @ (end - start)) or 1.0
@@ -370,8 +370,8 @@ def note_ends(volume: float) -> Issue:
         NOTE,
         "DEPOSITED_TWICE",
         Text(
-            "each helix starts and ends next to a full turn, where about {:.3g} cm3 in total are "
-            "deposited twice",
+            "each helix begins and ends beside a whole turn, where about {:.3g} cm3 are deposited "
+            "twice in total",
             1e-3 * volume,
         ),
     )

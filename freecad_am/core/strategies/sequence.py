@@ -48,8 +48,12 @@ def join_toolpaths(
     Toolpath
         The toolpath of all features.
     """
-    order = _print_order(toolpaths, sequence, up)
-    numbers = number_layers(toolpaths, sequence, up)
+    order = [(k, i) for k, toolpath in enumerate(toolpaths) for i in range(len(toolpath.layers))]
+    if sequence == BY_HEIGHT:
+        order = _lowest_first([_lowest(toolpath.layers, up) for toolpath in toolpaths])
+    numbers = [np.zeros(len(toolpath.layers), dtype=np.intp) for toolpath in toolpaths]
+    for number, (k, i) in enumerate(order):
+        numbers[k][i] = number
     first_path = toolpaths[0]
     sized = [_add_bead_sizes(toolpath, first_path) for toolpath in toolpaths]
     feeds = {toolpath.wire_feed for toolpath in toolpaths}
@@ -81,21 +85,6 @@ def join_toolpaths(
             uneven=_uneven(toolpaths, numbers),
         ),
     )
-
-
-def _print_order(toolpaths: Sequence[Toolpath], sequence: str, up: Array) -> list[tuple[int, int]]:
-    """Return feature and layer of the layers of the job, in print order."""
-    if sequence == BY_HEIGHT:
-        return _lowest_first([_lowest(toolpath.layers, up) for toolpath in toolpaths])
-    return [(k, i) for k, toolpath in enumerate(toolpaths) for i in range(len(toolpath.layers))]
-
-
-def number_layers(toolpaths: Sequence[Toolpath], sequence: str, up: Array) -> list[Index]:
-    """Return the index in the job of the layers of each feature; arguments as in `join_toolpaths`."""
-    numbers = [np.zeros(len(toolpath.layers), dtype=np.intp) for toolpath in toolpaths]
-    for number, (k, i) in enumerate(_print_order(toolpaths, sequence, up)):
-        numbers[k][i] = number
-    return numbers
 
 
 def _without_layers(toolpath: Toolpath) -> Toolpath:

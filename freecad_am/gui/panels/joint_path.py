@@ -246,11 +246,7 @@ def _figures(judgement: Judgement) -> list[str]:
     """
     figures = (
         (tr("Smallest joint margin: {:.1f} %, of {} in layer {}"), judgement.worst_margin, 100.0),
-        (
-            tr("Smallest inverse condition number: {0:.3f}, in layer {2}"),
-            judgement.worst_condition,
-            1.0,
-        ),
+        (tr("Smallest condition: {0:.3f}, in layer {2}"), judgement.worst_condition, 1.0),
         (
             tr("Largest joint speed: {:.0f} % of the maximum of {}, in layer {}"),
             judgement.worst_ratio,

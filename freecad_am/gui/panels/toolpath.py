@@ -11,7 +11,7 @@ import numpy as np
 from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
-from ...core.parameters.bead_classes import BY_ANGLE, BY_POINT, HIDDEN, SHARPEST, SPREAD
+from ...core.parameters.process import BY_ANGLE, BY_POINT, HIDDEN, SHARPEST, SPREAD
 from ...core.process import bead_model, wire
 from ...core.process.bead_model import MINUTE, BeadModel
 from ...core.process.wire import Measured
@@ -278,7 +278,7 @@ SEAM_KEYS = {  # keys of the seam that a position uses
     SPREAD: {"angle", "distance"},
     HIDDEN: {"away_from"},
 }
-NO_POINT = marked("First click a point on the part in the 3D view.")
+NO_POINT = marked("Click a place of the part in the 3D view first.")
 NO_VIEW = marked("Open a 3D view first.")
 NONE = "none"
 SCAN = "substrate_"  # prefix of scan parameters
@@ -337,14 +337,14 @@ class ToolpathPanel(StagePanel):
                 POINT,
                 tr("Take the clicked place"),
                 "TakeSeamPoint",
-                tr("Uses the point on the part that you clicked last in the 3D view"),
+                tr("Takes the place of the part that you clicked last in the 3D view"),
                 self._take_point,
             ),
             (
                 AWAY_FROM,
                 tr("Take the view direction"),
                 "TakeSeamDirection",
-                tr("Hides seams from the current view of the part"),
+                tr("Hides seams from the present view of the part"),
                 self._take_direction,
             ),
         ):

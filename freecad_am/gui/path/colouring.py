@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Colour the points of a path by quantity, with scales: layer, local distance, tilt, speed, bead
-width, kind of bead, setting by place, and machine margins of a joint path.
+width, kind of bead, and machine margins of a joint path.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...core.geometry.formatting import round_step
-from ...core.issues import Text
 from ...core.process.deposit.spacing import local_distances
 from ...core.toolpath import Bead, Toolpath
 from ...core.types import Array
@@ -24,8 +23,7 @@ Colour = tuple[float, float, float]
 # in English, because documents store these choices; the display translates the texts of a scale
 LAYER, DISTANCE, TILT = marked("layer"), marked("local distance"), marked("tilt")
 SPEED, WIDTH, KIND = marked("speed"), marked("width"), marked("kind of bead")
-SETTING = marked("setting")
-KINDS = (LAYER, DISTANCE, TILT, SPEED, WIDTH, KIND, SETTING)
+KINDS = (LAYER, DISTANCE, TILT, SPEED, WIDTH, KIND)
 MARGIN, RATIO, CONDITION = marked("joint margin"), marked("joint speed"), marked("condition")
 JOINT_KINDS = (MARGIN, RATIO, CONDITION, *KINDS)
 UNREACHABLE = (0.90, 0.10, 0.20)
@@ -47,17 +45,6 @@ _CLASSES = {
     "closing": CLOSING,
 }
 NO_WIDTH = (marked("no bead model"), NONE)
-NO_SETTING = (marked("no setting"), NONE)
-# colours that the colour-blind tell apart, by Okabe and Ito
-SETTING_COLOURS = (
-    (0.90, 0.62, 0.00),
-    (0.34, 0.71, 0.91),
-    (0.00, 0.62, 0.45),
-    (0.80, 0.47, 0.65),
-    (0.00, 0.45, 0.70),
-    (0.84, 0.37, 0.00),
-    (0.94, 0.89, 0.26),
-)
 FIRST_LAYER = marked("first layer")
 TICKS = 5
 _TOLERANCE = 1e-9
@@ -112,8 +99,6 @@ def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
     beads = [bead for _, _, bead in toolpath]
     if kind == KIND:
         return _classed(beads, [class_of(bead) for bead in beads], KIND)
-    if kind == SETTING:
-        return _by_setting(beads)
     if kind == WIDTH and any(bead.width is None for bead in beads):
         return _classed(beads, [NO_WIDTH] * len(beads), WIDTH)
     if kind == WIDTH:
@@ -164,32 +149,6 @@ def _classed(
         entry for entry in (CLOSED_BEAD, OPEN_BEAD, CENTRE, CLOSING, NO_WIDTH) if entry in classes
     )
     return colours, Scale(title, "", 0.0, 0.0, (), 0.0, 0.0, classes=present)
-
-
-def _by_setting(beads: list[Bead]) -> tuple[Array, Scale]:
-    """Colour each point by the last setting by place that holds there, and name it by its number."""
-    active = np.concatenate(
-        [np.zeros(len(bead)) if bead.settings is None else bead.settings for bead in beads]
-    )
-    numbers = np.frexp(active)[1] - 1  # of the highest bit; -1 without a setting
-    classes, colours = [], np.empty((len(numbers), 3))
-    for number in np.unique(numbers):
-        colour = NONE if number < 0 else SETTING_COLOURS[number % len(SETTING_COLOURS)]
-        classes.append(NO_SETTING if number < 0 else (Text("setting {}", int(number)), colour))
-        colours[numbers == number] = colour
-    scale = Scale(
-        SETTING,
-        "",
-        0.0,
-        0.0,
-        (),
-        0.0,
-        0.0,
-        without=marked("none"),
-        classes=tuple(classes),
-        values=np.where(numbers < 0, np.nan, numbers),
-    )
-    return colours, scale
 
 
 def automatic(values: Array, title: str, unit: str) -> Scale:

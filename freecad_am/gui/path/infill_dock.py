@@ -172,7 +172,7 @@ def _share_words(coverage: Coverage, name: str) -> str:
     if point is None:
         return text
     size = getattr(coverage, f"{name}_size")
-    largest = tr("the largest {:.2g} mm wide, at {}").format(size, place(point))
+    largest = tr("the largest place {:.2g} mm wide at {}").format(size, place(point))
     return f"{text}, {in_user_units(largest)}"
 
 

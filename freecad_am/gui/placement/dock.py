@@ -544,7 +544,7 @@ class PlacementDock:
             return
         self.found, self.numbers = None, []
         self._show()
-        self.form.tell(tr("{} has changed; recompute.").format(obj.Label), True)
+        self.form.tell(tr("{} has changed; compute again.").format(obj.Label), True)
 
     def close(self, document_goes: bool = False) -> None:
         """End the search and restore the view."""

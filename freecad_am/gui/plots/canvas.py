@@ -32,7 +32,7 @@ WORDS = (
     marked("Fit of the bead widths"),
     marked("Width of beads"),
     marked("Joint speeds while depositing"),
-    marked("Inverse condition number of the Jacobian (0 is singular)"),
+    marked("Condition of the Jacobian (0 is singular)"),
     marked("Travel speed"),
     marked("Predicted width of the bead"),
     marked("Predicted height of the bead"),

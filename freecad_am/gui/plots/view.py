@@ -26,7 +26,7 @@ WHEEL_STEP = 1.25  # zoom factor per wheel step
 ICON_SIZE = 18  # pixels
 # name, tooltip, matplotlib's icon, method, and object name of the button
 TOOLS = (
-    ("Home", marked("Zoom to everything; a double click does the same"), "home", "home", "whole"),
+    ("Home", marked("Show everything, also with a double click"), "home", "home", "whole"),
     ("Back", marked("Show the previous view"), "back", "back", "back"),
     ("Forward", marked("Show the next view"), "forward", "forward", "forward"),
     ("Pan", marked("Move the picture by dragging"), "move", "pan", "pan"),

@@ -445,9 +445,7 @@ def readout(cell: Cell, machine: Machine) -> str:
     if cell.arm is not None:
         notes.append(link_touches(*cell.arm))
     margin = tr("margin {:.1f} % ({})").format(100.0 * cell.margin, cell.nearest)
-    condition = tr("inverse condition number {:.4f}, minimum {:.4f}").format(
-        cell.condition, cell.threshold
-    )
+    condition = tr("condition {:.4f}, least {:.4f}").format(cell.condition, cell.threshold)
     joints = "   ".join(
         f"{name} {value:.2f}{unit}"
         for name, value, unit in zip(

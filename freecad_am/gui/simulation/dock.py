@@ -424,7 +424,7 @@ class Simulation:
     def _changed_object(self, obj: Any, name: str) -> None:
         if name == "Key":
             self.timer.stop()
-            text = tr("{label} was recomputed").format(label=obj.Label)
+            text = tr("{label} was computed again").format(label=obj.Label)
             QtCore.QTimer.singleShot(0, lambda: self.end(text))
 
 

@@ -241,7 +241,7 @@ class Fields(QtGui.QWidget):
         self.next = QtGui.QPushButton(tr("Next finding"))
         self.next.setObjectName("next_finding")
         self.next.setToolTip(
-            tr("To the next point where a limit, a singularity or a speed needs attention")
+            tr("To the next place where a limit, a singularity or a speed needs attention")
         )
         self.next.clicked.connect(lambda *_: acts["next_finding"]())
         self.next.setEnabled(bool(self.run.watch.findings))

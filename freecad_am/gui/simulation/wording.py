@@ -42,7 +42,7 @@ def finding(finding: Finding, unit: str = "deg") -> str:
         watch.LIMIT: tr("{label} is {value:.2f}{unit} past its limit"),
         watch.NEAR_LIMIT: tr("{label} comes within {value:.2f}{unit} of its limit"),
         watch.SINGULAR: tr(
-            "Near a singularity: inverse condition number {value:.3f}, required at least {than:.3f}"
+            "Near a singularity: condition {value:.3f}, required at least {than:.3f}"
         ),
         watch.SLOWED: tr("{label} cannot keep the speed: {than} becomes {value}"),
         watch.ISSUE: "{label}",
@@ -65,10 +65,10 @@ def nothing(run: Run) -> str:
     """Return the text for no findings, with the scope of the check."""
     if run.watch.arm_known:
         return tr(
-            "No findings: the motion stays away from limits, singularities and maximum speeds, and "
-            "no link of the robot touches an obstacle"
+            "No findings: no limit, singularity or speed is near, and no link of the robot "
+            "touches an obstacle"
         )
-    return tr("No findings: the motion stays away from limits, singularities and maximum speeds")
+    return tr("No findings: no limit, singularity or speed is near")
 
 
 def place(run: Run, moment: Moment) -> str:

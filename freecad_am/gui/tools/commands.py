@@ -194,8 +194,7 @@ TOOLS = {
         "open_part",
         marked("Open Part…"),
         marked(
-            "Opens a part or mesh; a separate process reads the file, so a damaged file cannot "
-            "crash FreeCAD"
+            "Opens a part or mesh from a file in a separate process, even if the file is damaged"
         ),
         open_part,
         whats_this.nothing,

@@ -122,9 +122,9 @@ def _platform_issue(cell: Cell, collision: Collision, level: str) -> Issue:
         level,
         PLATFORM_COLLISION,
         Text(
-            "{} extends into the platform, a plate of {:.4g} mm diameter below the origin of the "
-            "platform frame; set cell.platform to the real clamping position and "
-            "cell.platform_diameter to the real size (0 for none)",
+            "{} extends into the platform, a plate {:.4g} mm below the origin of the platform "
+            "frame; set cell.platform to the real clamping position and cell.platform_diameter "
+            "to the real size (0 for none)",
             collision.what,
             cell.platform_diameter,
         ),

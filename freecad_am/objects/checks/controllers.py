@@ -189,7 +189,7 @@ def check_external(cell: Cell, post: str) -> None:
     raise InputError(
         "UNSUPPORTED_AXES",
         "program.post",
-        "programs of {} cannot use {}; {}",
+        "programs of {} are not written with {}; {}",
         post,
         Word(external),
         Word(reason),

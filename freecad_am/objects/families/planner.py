@@ -162,9 +162,9 @@ def tilt_clear(
 
     build: build direction parameters that replace those of the feature.
     """
-    from ...core.progress import Watch
     from ...core.strategies import estimated_size
     from ...core.strategies.clearance import clear_by_tilt
+    from ...core.strategies.progress import Watch
 
     issues: list[Issue] = []
 

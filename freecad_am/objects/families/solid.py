@@ -60,10 +60,7 @@ class SolidPlanner(FilledPlanner):
         self, toolpath: Toolpath, inputs: Given, sources: Sequence[Taken], places: on_part.Places
     ) -> PartDistances | None:
         """Return distances at the slicing height, above the lower surface of a layer's beads."""
-        high = inputs.strategy.layer_height
-        if toolpath.adapts_heights:
-            high = toolpath.layer_heights[places.layer][:, None]
-        up = inputs.strategy.share_of_cut * high * places.build
+        up = inputs.strategy.share_of_cut * inputs.strategy.layer_height * places.build
         cut_places = places._replace(points=places.points + up)
         return super().part_distances(toolpath, inputs, sources, cut_places)
 
@@ -79,9 +76,9 @@ def _propose_for_mesh(part: SelectedPart) -> Proposal:
         return _choose_layers(part, Text("{} is a mesh, to be filled", part.label))
     size = at_least(mesh.opening)
     why = Text(
-        "{} is an open mesh that intersects itself at {} pairs of triangles, for instance at {}, "
-        "so a wall of one bead is impossible; the mesh is filled, with its {} holes of up to "
-        "{:.4g} mm closed",
+        "{} is an open mesh that intersects itself at {} pairs of triangles, as at {}, so a wall "
+        "of one bead is impossible; the mesh is filled, with its {} holes of up to {:.4g} mm "
+        "closed",
         part.label,
         mesh.crossings,
         mesh.crossing,
@@ -244,8 +241,7 @@ def bend_hint(shape: Any) -> str:
     with contextlib.suppress(*kernel.FAULTS):
         if name := carrier(shape.Solids):
             return Text(
-                " (other solids rest on the curved surface of {}; choose it as the substrate to "
-                "bend their layers)",
+                " (other solids are on the bend of {}: as the substrate it shapes their layers)",
                 name,
             )
     return ""

@@ -7,10 +7,9 @@ for the nozzle and also supports the feature.
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,12 +21,9 @@ from ...core.geometry.obstacles import Body
 from ...core.issues import InputError
 from ...core.kinematics.cell import mounted
 from ...core.parameters.cell import CellParameters
-from ...core.parameters.settings import UNUSED_CODE
 from ...core.process.deposit import balance as deposit_balance
 from ...core.strategies import sequence, support
-from ...core.strategies.by_place import Stack, lowest_point
 from ...core.toolpath import Toolpath as CoreToolpath
-from ...core.types import Array
 from ..checks.deposit import check_on_part
 from ..families.given import Given
 from ..families.planner import CHECKED, CLEARING, STRATEGY
@@ -38,9 +34,8 @@ from .toolpaths import (
     above_platform,
     add_wire_speed,
     bases_of,
-    complete_layers,
     kept_clear,
-    layers_before_places,
+    layers_of,
     measure_infill,
     over_edge,
 )
@@ -123,18 +118,18 @@ def planned_in_sequence(
     _refuse_overlaps(members, names)
     cell = members[0].inputs.cell
     planned_parts: list[CoreToolpath] = []
-    all_inputs: list[Given] = []
     stands = None
     for number, entry in enumerate(members):
         inputs = dataclasses.replace(entry.inputs, stands=stands if cell is not None else None)
-        with _name_errors(entry), progress.one_of(number, len(members), 0.0, STRATEGY):
-            layers = layers_before_places(inputs)
+        try:
+            with progress.one_of(number, len(members), 0.0, STRATEGY):
+                layers = measure_infill(add_wire_speed(layers_of(inputs), inputs), inputs)
+        except InputError as error:
+            raise InputError(error.code, f"{entry.label}: {error.where}", error.message) from None
         planned_parts.append(layers)
-        all_inputs.append(inputs)
         if stands is None:
             stands = mounted(cell or CellParameters(), layers.frame, layers.family)
     assert stands is not None
-    planned_parts = _complete_features(members, all_inputs, planned_parts, order, stands[:3, 2])
     around = _distinct([body for entry in members for body in entry.surroundings()])
     labels = [entry.label for entry in members]
     toolpath = sequence.join_toolpaths(planned_parts, labels, order, stands[:3, 2], around)
@@ -160,51 +155,6 @@ def planned_in_sequence(
         ),
         on_part=None if worst is None else (sum(entry[0] for entry in on_parts), *worst[1:]),
     )
-
-
-@contextlib.contextmanager
-def _name_errors(feature: Member) -> Iterator[None]:
-    """Name the feature in an InputError."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(error.code, f"{feature.label}: {error.where}", error.message) from None
-
-
-def _complete_features(
-    members: Sequence[Member],
-    inputs: Sequence[Given],
-    layers: Sequence[CoreToolpath],
-    order: str,
-    up: Array,
-) -> list[CoreToolpath]:
-    """Return the layers of each feature with settings by place of the whole job, and the wire feed.
-
-    Layers are numbered through, and heights count from the lowest point of all features.
-    """
-    numbers = sequence.number_layers(layers, order, up)
-    ground = min(lowest_point(feature_layers, up) for feature_layers in layers)
-    placed = []
-    for k, entry in enumerate(members):
-        with _name_errors(entry):
-            toolpath = complete_layers(layers[k], inputs[k], Stack(up, numbers[k], ground))
-            placed.append(measure_infill(add_wire_speed(toolpath, inputs[k]), inputs[k]))
-    unused = [
-        {issue.message for issue in toolpath.issues if issue.code == UNUSED_CODE}
-        for toolpath in placed
-    ]
-    of_all = set.intersection(*unused)
-    return [
-        dataclasses.replace(
-            toolpath,
-            issues=tuple(
-                issue
-                for issue in toolpath.issues
-                if issue.code != UNUSED_CODE or (k == 0 and issue.message in of_all)
-            ),
-        )
-        for k, toolpath in enumerate(placed)
-    ]
 
 
 def _judge_feature(

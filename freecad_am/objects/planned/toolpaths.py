@@ -21,16 +21,11 @@ from ...core.parameters.filled import PLANES
 from ...core.parameters.settings import WHERE, Setting
 from ...core.process import classes, model_notes, seams
 from ...core.process.bead_model import check_speeds
-from ...core.process.cooling_waits import (
-    enforce_layer_time,
-    remove_waits,
-    slow_layers,
-    slowest_speed,
-)
+from ...core.process.cooling_waits import enforce_layer_time, remove_waits
 from ...core.process.deposit.pieces import deposited_twice
 from ...core.process.wire import set_wire_feed
 from ...core.strategies import support
-from ...core.strategies.by_place import Stack, Zone, apply_settings, prevailing_settings
+from ...core.strategies.by_place import Zone, apply_settings
 from ...core.strategies.clearance.nozzle_check import CLEARANCE
 from ...core.toolpath import MotionRules, Toolpath
 from ...core.toolpath import Toolpath as CoreToolpath
@@ -118,59 +113,39 @@ def above_platform(toolpath: CoreToolpath, inputs: Given) -> list[Issue]:
 
 
 def layers_of(inputs: Given) -> CoreToolpath:
-    """Return layers and beads of a feature, with its settings by place.
+    """Return layers and beads of a feature.
 
     The nozzle is kept clear only of the feature itself, and only if the layers determine the tool
     directions. Raises the InputErrors of the family.
     """
-    layers = layers_before_places(inputs)
-    return complete_layers(layers, inputs, Stack(stacking_direction(layers, inputs)))
-
-
-def layers_before_places(inputs: Given) -> CoreToolpath:
-    """Return layers and beads of a feature at the speeds of the job and its classes, as `layers_of`."""
-    process, timing = inputs.process, inputs.strategy.timing
-    is_slowed = slowest_speed(timing, process, inputs.model) > 0.0
-    if process.bead_model == "none" and not (
-        process.wire.feed_mode == "constant" or process.ramped or is_slowed
-    ):
+    process = inputs.process
+    if process.bead_model == "none" and process.wire.feed_mode != "constant" and not process.ramped:
         raise InputError(
             "NOT_FOR_FAMILY",
             "process.wire.feed_mode",
-            "without a bead model, a ramp or slowed layers the travel speed is constant, and a "
-            "proportional wire feed has no effect; use constant, a process.bead_model, "
-            "process.start.ramp, process.end.ramp or strategy.layer_time.by: slow",
+            "without a bead model or a ramp the travel speed is constant, and a proportional "
+            "wire feed has no effect; use constant, a process.bead_model, or process.start.ramp "
+            "or process.end.ramp",
         )
     classes.refuse_speeds(process)
     seams.check_parameters(process.seam)
     family = family_of(inputs.strategy)
-    layers = planner_of(family).plan_layers(inputs)
+    layers, model = planner_of(family).plan_layers(inputs), inputs.model
     if not family.is_filled:
         layers = seams.place_seams(layers, process)
     seams.check_distance(layers, process.seam)
-    return dataclasses.replace(
+    layers = dataclasses.replace(
         layers, issues=(*layers.issues, *seams.unused_issues(layers, process.seam))
     )
-
-
-def complete_layers(layers: CoreToolpath, inputs: Given, stack: Stack) -> CoreToolpath:
-    """Return the layers of a feature with settings by place, bead ends and waits.
-
-    stack: how the layers are numbered, and heights measured.
-    """
-    process, model, family = inputs.process, inputs.model, family_of(inputs.strategy)
-    if any(key.startswith("seam_") for setting in process.settings for key in setting.own_values()):
-        prevailing = prevailing_settings(layers, process, inputs.zones, stack)
-        layers = seams.place_seams_by_place(
-            layers, process, prevailing, _locate_angle(layers, inputs)
-        )
     if model is not None and not family.is_filled:
         layers = model_notes.hold_widths(layers, process, model)
-    layers = apply_settings(layers, process, inputs.zones, stack)
+    layers = apply_settings(layers, process, inputs.zones, stacking_direction(layers, inputs))
     toolpath = seams.set_scarfs(classes.set_bead_ends(layers, process), process)
     if not family.is_filled or _waits_by_speed(inputs):
         toolpath = remove_waits(toolpath)
-        toolpath = enforce_layer_time(toolpath, inputs.strategy.timing.to_wait, process.rapid_speed)
+        toolpath = enforce_layer_time(
+            toolpath, getattr(inputs.strategy, "min_layer_time", 0.0), process.rapid_speed
+        )
     twice = toolpath.checks.twice if family.is_filled else deposited_twice(toolpath)
     return dataclasses.replace(
         toolpath.add_checks(twice=twice),
@@ -178,38 +153,21 @@ def complete_layers(layers: CoreToolpath, inputs: Given, stack: Stack) -> CoreTo
     )
 
 
-def _locate_angle(toolpath: CoreToolpath, inputs: Given) -> seams.LocateAngle | None:
-    """Return the rule for starts by angle: about the axis, or in plane layers; else None."""
-    if toolpath.traits.has_axis:
-        return seams.locate_azimuth
-    groups = getattr(inputs.wall, "groups", ())
-    if groups and inputs.wall.has_plane_layers():
-        return seams.locate_farthest(np.asarray(groups[0].base.frame))
-    return None
-
-
 def _waits_by_speed(inputs: Given) -> bool:
     """Return whether the waits of a filled feature must be found again, at the speeds of places.
 
-    Raises InputError NOT_YET for a wait between visits to a solid, with speeds of places or layers.
+    Raises InputError NOT_YET for a wait between visits to a solid.
     """
-    if inputs.strategy.timing.slows and getattr(inputs.strategy, "wait", 0.0) > 0.0:
-        raise InputError(
-            "NOT_YET",
-            "strategy.wait",
-            "slowed layers cannot be combined with this setting yet; use process.between_layers.wait or "
-            "strategy.layer_time.by: wait",
-        )
     if all(setting.travel_speed is None for setting in inputs.process.settings):
         return False
     if getattr(inputs.strategy, "wait", 0.0) > 0.0:
         raise InputError(
             "NOT_YET",
             "strategy.wait",
-            "settings by place that change the travel speed cannot be combined with this setting "
-            "yet; use strategy.layer_time or process.between_layers.wait",
+            "settings by place that change the travel speed cannot be combined with it yet; use "
+            "strategy.min_layer_time or process.between_layers.wait",
         )
-    return inputs.strategy.timing.to_wait > 0.0
+    return getattr(inputs.strategy, "min_layer_time", 0.0) > 0.0
 
 
 def stacking_direction(toolpath: CoreToolpath, inputs: Given) -> Array:
@@ -233,12 +191,8 @@ def kept_clear(
 
 
 def add_wire_speed(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
-    """Set the wire feed, slow short layers, and report speeds outside the material's range."""
-    process, model, timing = inputs.process, inputs.model, inputs.strategy.timing
-    toolpath = set_wire_feed(toolpath, process, model, timing.slows)
-    if timing.slows:
-        toolpath = slow_layers(toolpath, timing, process, slowest_speed(timing, process, model))
-    return check_speeds(toolpath, process)
+    """Set the wire feed of a toolpath, and report speeds outside the material's range."""
+    return check_speeds(set_wire_feed(toolpath, inputs.process, inputs.model), inputs.process)
 
 
 def measure_infill(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:

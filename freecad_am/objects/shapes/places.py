@@ -67,7 +67,7 @@ def _container_of(obj: Any) -> Any:
         raise InputError(
             "SEVERAL_PLACES",
             obj.Label,
-            "several link groups show the object ({}), each at its own position; choose one group, "
+            "several link groups show the object ({}), each in its own place; choose one group, "
             "or make a link to the object",
             ", ".join(candidate.Label for candidate in linking),
         )

@@ -10,7 +10,6 @@ from typing import Any
 
 from ...brep.kernel.limits import reported
 from ...core.issues import InputError, Issue
-from ...core.progress import pulsing
 
 Listener = Callable[[float, str], None]
 Findings = Callable[[Issue], None]
@@ -25,7 +24,6 @@ class _Listeners(threading.local):
 
     def __init__(self) -> None:
         self.stack: list[tuple[Listener, Findings | None]] = []
-        self.last: list[tuple[float, str] | None] = []  # last report to each listener
 
 
 _listeners = _Listeners()
@@ -34,16 +32,7 @@ _listeners = _Listeners()
 def report(fraction: float, text: str) -> None:
     """Report to the innermost listener of the current thread, which may raise to cancel."""
     if _listeners.stack:
-        _listeners.last[-1] = fraction, text
         _listeners.stack[-1][0](fraction, text)
-
-
-def _repeat() -> None:
-    """Report again what was reported last, so that a listener can cancel between two reports."""
-    for (listener, _), last in zip(reversed(_listeners.stack), reversed(_listeners.last)):
-        if last is not None:
-            listener(*last)
-            return
 
 
 def report_issue(issue: Issue) -> None:
@@ -60,8 +49,7 @@ def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[No
     Parameters
     ----------
     listener : Listener
-        Function of fraction and text; may raise an exception to cancel. Within a long step it
-        receives the last report again and again.
+        Function of fraction and text; may raise an exception to cancel.
     findings : Findings or None, optional
         Function of an issue; None to ignore issues.
 
@@ -76,13 +64,10 @@ def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[No
                 "BAD_INPUT", where, "{!r} is not a function; pass a function", type(called).__name__
             )
     _listeners.stack.append((listener, findings))
-    _listeners.last.append(None)
     try:
-        with pulsing(_repeat):
-            yield
+        yield
     finally:
         _listeners.stack.pop()
-        _listeners.last.pop()
 
 
 @contextlib.contextmanager

@@ -147,7 +147,8 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
         if run.analogue not in (None, feed.output) or not move.linear or not run.on:
             raise unreadable(
                 where,
-                "only one analogue output may follow the speed, during linear moves with deposit",
+                "a second analogue output follows the speed, or an analogue output follows the "
+                "speed of a joint move or without deposit",
             )
         run.analogue = feed.output
     starts = [feed for feed in feeds if feed.scale]

@@ -553,7 +553,7 @@ def _refuse(listing: Listing, move: int, run: Run) -> None:
     if moves.straight[move] and not records.cartesian:
         raise unreadable(
             where,
-            "a move does not match the type of its recorded position (joint or Cartesian)",
+            "a move does not fit the form in which its position is recorded (joint or Cartesian)",
         )
     raise unreadable(
         where,

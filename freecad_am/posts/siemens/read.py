@@ -78,10 +78,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     main = [name for name in files if name.upper().endswith(".MPF")]
     if len(main) != 1 or any(not name.upper().endswith((".MPF", ".SPF")) for name in files):
         raise unreadable(
-            "program",
-            Text(
-                "{} main programs were given, but exactly one with its parts is needed", len(main)
-            ),
+            "program", Text("{} main programs, but exactly one with its parts is needed", len(main))
         )
     programs = {
         name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()

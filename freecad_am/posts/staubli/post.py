@@ -214,7 +214,7 @@ MOVE_LINE = re.compile(rb" *move[jl]\(")
 ON_CONTROLLER = controller_checks(
     "The world frame of the controller is the robot base, and joint speeds are the nominal ones",
     "The outputs and inputs are linked to the process",
-    "Loading of parts, and tools attached to other tools, were tested in a dry run",
+    "A dry run has tried loading parts, and tools that are attached to other tools",
     "Payload is set and the monitor speed is 100 %",
 )
 AXES = 6

@@ -474,10 +474,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     ]
     if len(outer) != 1:
         raise unreadable(
-            "program",
-            Text(
-                "{} applications were given, but exactly one with its parts is needed", len(outer)
-            ),
+            "program", Text("{} applications, but exactly one with its parts is needed", len(outer))
         )
     run = _Run(by_folder)
     _follow(by_folder[outer[0]], "start", run, ())

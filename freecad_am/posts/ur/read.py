@@ -126,9 +126,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
     if len(files) != 1:
-        raise unreadable(
-            "program", Text("{} files were given, but exactly one script is needed", len(files))
-        )
+        raise unreadable("program", Text("{} files, but exactly one script is needed", len(files)))
     ((file, content),) = files.items()
     name, main = _parsed(file, content)
     if not re.fullmatch(rf"(?:.*/)?{name}\.script", file):

@@ -72,28 +72,6 @@ def test_equal_islands_are_filled_once(fill_calls, fill, shape):
     assert bare.shape == expected.shape and np.abs(bare - expected).max(initial=0.0) < 1e-6
 
 
-def test_contours_in_place_of_lines_serve_all_angles(monkeypatch):
-    """A region too narrow for lines gets the contours of its first layer at every fill angle."""
-    calls, adapt = [], filling.adapt_lines
-    monkeypatch.setattr(filling, "adapt_lines", lambda *given: calls.append(given) or adapt(*given))
-    strategy = SolidParameters(
-        bead_spacing=SPACING, fill="zigzag", fill_angle_step=0.5, widths="adaptive"
-    )
-    wedge = SPACING * np.array([[0.0, 0.0], [9.0, 0.0], [8.6, 3.4], [0.0, 2.2]])
-    layers = [make_layer([wedge + at], number) for number, at in enumerate(OFFSETS)]
-    shared = Pictures(strategy, ProcessParameters())
-    together = [shared.filled(layer, "wedge") for layer in layers]
-    assert len(calls) == 1
-    for layer, picture in zip(layers, together):
-        alone = Pictures(strategy, ProcessParameters()).filled(layer, "wedge")
-        assert len(picture.curves) == len(alone.curves) > 1
-        assert np.abs(np.subtract(picture.cover, alone.cover)).max() < 1e-6  # mm^2
-        for curve, other in zip(picture.curves, alone.curves):
-            assert (curve.kind, curve.closed) == (other.kind, other.closed)
-            assert np.abs(curve.points - other.points).max() < 1e-6  # mm
-    assert len(calls) == 1 + len(layers)
-
-
 def test_rotated_and_mirrored_islands_are_filled_separately(fill_calls):
     strategy = SolidParameters(bead_spacing=SPACING)
     rotated, mirrored = 50.0 - BLOCK, (BLOCK * [-1.0, 1.0] - 50.0)[::-1]

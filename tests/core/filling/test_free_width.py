@@ -202,7 +202,7 @@ def test_spread_starts_keep_their_distance(name):
         ((1.4, 0.7), "140 % to 70 % is not a range; give the smaller percentage first"),
         (
             (1.1, 1.4),
-            "110 % to 140 % excludes 100 %, the nominal width; extend the range to include 100 %",
+            "110 % to 140 % excludes 100 %, the usual width; extend the range to include 100 %",
         ),
         ((1.0,), "is not a range; give two percentages"),
         ((float("nan"), 1.2), "nan is not a number"),

@@ -247,7 +247,7 @@ def test_no_pose_serves(dome):
     (CellParameters(machine="table-xyzac", setup="rotary-table"), "deposition-point"),
 ])  # fmt: skip
 def test_what_a_cell_has_not_is_not_moved(settings, moves):
-    with pytest.raises(InputError, match="the placement cannot move") as error:
+    with pytest.raises(InputError, match="the part is not placed by") as error:
         place.select_movable(settings, moves)
     assert (error.value.code, error.value.where) == ("NOT_FOR_SETUP", "place.moves")
 

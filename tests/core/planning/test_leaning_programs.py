@@ -138,7 +138,7 @@ def test_corners_without_a_limit_are_slowed_and_that_is_told():
     path = toolpath("deflected", np.eye(4), max_turn="inf")
     planned, motion = motion_of(cell, path)
     (warning,) = [issue for issue in planned.issues if issue.code == "SLOWED"]
-    assert warning.level == "warning" and "short sections" in warning.message
+    assert warning.level == "warning" and "short places" in warning.message
     bead = next(
         bead_path
         for bead_path in planned.beads

@@ -63,7 +63,7 @@ def test_columns_of_a_bead_go_with_its_points():
     open_bead = bead()
     back = open_bead.reversed()
     assert (
-        (back.wire_share == SHARE).all()
+        back.wire_share == SHARE
         and (back.height == open_bead.height[::-1]).all()
         and (back.width == open_bead.width[::-1]).all()
     )
@@ -82,16 +82,10 @@ def test_columns_of_a_bead_go_with_its_points():
         closed.started_at(10).height, 2.0 + np.r_[np.arange(10.0, 40.0), np.arange(11.0)]
     )
     longer = closed.run_on(1.0)
-    assert len(longer.height) == len(longer.wire_share) == len(longer) > 41 and longer.width is None
-    np.testing.assert_allclose(longer.height[41:46], height[1:6])
-    # a share that varies stays on its segments, each named by the point at its end
-    varied = dataclasses.replace(closed, wire_share=np.arange(41.0))
-    np.testing.assert_array_equal(
-        varied.started_at(10).wire_share[1:], np.r_[np.arange(11.0, 41.0), np.arange(1.0, 11.0)]
+    assert (
+        len(longer.height) == len(longer) > 41 and longer.wire_share == 3.0 and longer.width is None
     )
-    np.testing.assert_array_equal(varied.run_on(1.0).wire_share[41:45], np.arange(1.0, 5.0))
-    np.testing.assert_array_equal(varied.reversed().wire_share[1:], np.arange(40.0, 0.0, -1.0))
-    np.testing.assert_array_equal(varied.halved(np.array([3])).wire_share[3:7], [3, 4, 4, 5])
+    np.testing.assert_allclose(longer.height[41:46], height[1:6])
     with pytest.raises(ValueError, match="height"):
         dataclasses.replace(closed, height=height[1:])
 

@@ -128,7 +128,7 @@ def test_tables_that_are_none(rows, code):
         (TABLE[1::3], "all beads have the travel speed 600 mm/min; measure"),
         (
             [(30, 300, 12, 3), (30, 300, 12.5, 3), (60, 600, 9, 2.5), (60, 600, 9.5, 2.6)],
-            "speed and radius change only together, so their effects cannot be separated;",
+            "speeds and radii vary only together;",
         ),
         (
             TABLE[:-1] + [(90, -300, 7.46, 2.14)],

@@ -20,9 +20,7 @@ from freecad_am.core.parameters.process import (
     SeamParameters,
     WireParameters,
 )
-from freecad_am.core.parameters.settings import Setting
 from freecad_am.core.process import seams
-from freecad_am.core.strategies.by_place import Stack, prevailing_settings
 from freecad_am.core.strategies.solids.plan import plan
 from freecad_am.core.toolpath import LEAST_SECTION, Bead, Layer, Toolpath
 
@@ -247,69 +245,6 @@ def test_filled_solids_have_the_beads_of_the_usual_seam_started_elsewhere(rule):
                 assert np.linalg.norm(at) == pytest.approx(
                     np.linalg.norm(bead.points, axis=1).max(), abs=1e-6
                 )
-
-
-@pytest.mark.parametrize(
-    "rule",
-    [*RULES, {"angle": math.radians(70.0), "step": math.radians(25.0)}],
-    ids=lambda rule: rule.get("position", "angle"),
-)
-def test_a_setting_of_all_layers_has_the_seams_of_the_job(rule):
-    """A place that holds everywhere gives what `process.seam` gives; by halves, each its own half."""
-    usual, other = solid_plan(SeamParameters()), solid_plan(SeamParameters(**rule))
-    values = {f"seam_{key}": value for key, value in rule.items()}
-    for first in (0, 3):
-        process = ProcessParameters(settings=(Setting(first_layer=first, **values),))
-        active = prevailing_settings(usual, process, (), Stack(UP))
-        placed = seams.place_seams_by_place(
-            usual, process, active, seams.locate_farthest(np.eye(4))
-        )
-        for number, (layer, before) in enumerate(zip(placed.layers, usual.layers)):
-            if number < first:
-                assert layer.beads == before.beads
-                continue
-            beads = [bead for bead in layer.beads if bead.closed]
-            assert beads
-            if rule.get("position") == "spread":  # depends on the layer below
-                continue
-            starts = {
-                round(bead.length, 1): bead.points[0]
-                for bead in other.layers[number].beads
-                if bead.closed and not bead.role.ring
-            }
-            for bead in beads:
-                if bead.role.ring:
-                    continue
-                start = starts[round(bead.length, 1)]
-                assert np.linalg.norm(bead.points[0] - start) < 2.0 * CHORD_ERROR
-
-
-def test_a_bead_follows_the_setting_of_at_least_half_of_its_length():
-    ring = toolpath_of([closed_bead(circle(20.0))], [closed_bead(circle(20.0), 2.0)])
-    for edge, moved in ((-6.0, True), (1.0, False)):  # of 40 mm from -20
-        box = (edge, -50.0, -1.0, 50.0, 50.0, 9.0)
-        setting = Setting(box=box, seam_position="point", seam_point=(0.0, 50.0, 0.0))
-        process = ProcessParameters(settings=(setting,))
-        active = prevailing_settings(ring, process, (), Stack(UP))
-        placed = seams.place_seams_by_place(ring, process, active, None)
-        for _, _, bead in placed:
-            wanted = (0.0, 20.0) if moved else (20.0, 0.0)
-            assert bead.points[0][:2] == pytest.approx(wanted, abs=0.05)
-        codes = [issue.code for issue in placed.issues]
-        assert codes == ([] if moved else ["SETTING_UNUSED"])
-    for setting, code, where in (
-        (Setting(first_layer=0, seam_angle=1.0), "NOT_FOR_FAMILY", "seam.position"),
-        (Setting(first_layer=0, seam_position="point"), "BAD_VALUE", "seam.point"),
-    ):
-        process = ProcessParameters(settings=(setting,))
-        with pytest.raises(InputError) as error:
-            seams.place_seams_by_place(ring, process, np.ones(2, dtype=int), None)
-        assert error.value.code == code and error.value.where == f"settings[0].process.{where}"
-    setting = Setting(first_layer=0, seam_position="sharpest", seam_distance=5.0)
-    placed = seams.place_seams_by_place(
-        ring, ProcessParameters(settings=(setting,)), np.ones(2, dtype=int), None
-    )
-    assert "settings[0].process.seam.distance has no effect" in placed.issues[-1].message
 
 
 def gaps_of_starts(toolpath, open_beads=False):
@@ -559,10 +494,10 @@ def test_scarfs_that_do_not_fit_are_rejected_or_reported():
     slow_end = BeadEnd(length=5.0, travel_speed=3.0)
     for values, text in (
         ({"wire": WireParameters(feed_mode="proportional")}, "constant wire feed"),
-        ({"end": slow_end}, "that the scarf sets too"),
+        ({"end": slow_end}, "where the scarf does"),
         (
             {"classes": (BeadClass("contour", end_length=5.0, end_travel_speed=3.0),)},
-            "that the scarf sets",
+            "where the scarf",
         ),
     ):
         with pytest.raises(InputError, match=text):

@@ -14,15 +14,7 @@ from freecad_am.core.preflight import checks
 from freecad_am.core.process import wire
 from freecad_am.core.process.bead_model import check_speeds
 from freecad_am.core.process.wire import set_wire_feed
-from freecad_am.core.toolpath import (
-    Bead,
-    BeadEnds,
-    BeadRole,
-    Layer,
-    SequencedFeature,
-    Toolpath,
-    wire_of,
-)
+from freecad_am.core.toolpath import Bead, BeadEnds, BeadRole, Layer, SequencedFeature, Toolpath
 
 ENDS = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]])
 UP = np.broadcast_to([0.0, 0.0, 1.0], (2, 3))
@@ -130,37 +122,6 @@ def test_classes_at_speeds_of_their_own_are_held_against_the_wire():
     assert with_feed.issues == () and checks.wire_feed(
         with_feed, near_balance
     ).worst == pytest.approx(100.0 * (1.0 - 6.0 / 6.5))
-
-
-def test_wire_feeds_by_place_balance_the_beads_there_or_are_reported():
-    """Auto by place is balanced at the speed of the place, and a given feed is compared with it."""
-    bead = replace(
-        BEAD,
-        points=np.column_stack([[0.0, 40.0, 70.0, 100.0], np.zeros((4, 2))]),
-        build=np.tile(BEAD.build[:1], (4, 1)),
-        tool=np.tile(BEAD.tool[:1], (4, 1)),
-        parameter=np.arange(4.0),
-        speed=np.array([6.0, 6.0, 3.0, 6.0]),
-        role=BeadRole(bead_class="contour"),
-        settings=np.array([0.0, 0.0, 1.0, 2.0]),
-    )
-    path = replace(PATH, layers=(Layer((bead,)),))
-    text = "height to 3: travel_speed 3, wire_feed auto; height from 3: wire_feed {}"
-    balanced = 48.0 / process("auto").wire.section
-    for given, warned in ((0.95 * balanced, False), (0.5 * balanced, True)):
-        parameters = replace(process("auto"), settings=text.format(given))
-        with_feed = set_wire_feed(path, parameters, None)
-        (planned,) = with_feed.layers[0].beads
-        wanted = [balanced, balanced, 0.5 * balanced, given]
-        np.testing.assert_allclose(wire_of(planned), wanted)
-        np.testing.assert_allclose(wire_of(planned.reversed())[1:], wanted[:0:-1])
-        assert checks.wire_feed(with_feed, parameters).ok == (not warned)
-        assert [issue.code for issue in with_feed.issues] == ["FEED_BALANCE"] * warned
-        if warned:
-            assert "contour settings[1]: the wire feeds 24 mm3/s" in with_feed.issues[0].message
-    # where none holds, the beads have one feed
-    unused = set_wire_feed(replace(path, layers=(Layer((BEAD,)),)), parameters, None)
-    assert unused.layers[0].beads[0].wire_feeds is None
 
 
 @pytest.mark.parametrize("planned", [False, True])

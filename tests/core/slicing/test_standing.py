@@ -250,7 +250,7 @@ def test_overlapping_axis_aligned_boxes_are_rejected():
         return Body(name, corners, np.array(faces, dtype=np.int64))
 
     seats = [Seat(Base("hub", Developable(60.0), np.eye(4)), (Stretch(-math.inf, math.inf),))]
-    with pytest.raises(InputError, match="overlap, for instance at") as caught:
+    with pytest.raises(InputError, match="overlap, as at") as caught:
         group_by_base(
             [make_box("one", [50.0, -10.0, -10.0]), make_box("two", [55.0, -5.0, -5.0])],
             seats,

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Settings by place: beads are cut where they change, judged point by point without the search."""
 
-import csv
-import dataclasses
 import os
 
 import numpy as np
@@ -12,17 +10,7 @@ from freecad_am.core.geometry.obstacles import Body, box
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.settings import SETTINGS, Setting
-from freecad_am.core.process.seams import locate_farthest, place_seams_by_place
-from freecad_am.core.process.wire import set_wire_feed
-from freecad_am.core.simulation import waypoints
-from freecad_am.core.simulation.timeline import deposit_motion
-from freecad_am.core.strategies.by_place import (
-    UNUSED_CODE,
-    Stack,
-    Zone,
-    apply_settings,
-    prevailing_settings,
-)
+from freecad_am.core.strategies.by_place import UNUSED_CODE, Zone, apply_settings
 from freecad_am.core.toolpath import Bead, BeadRole, Layer, Toolpath
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -171,7 +159,7 @@ def check_round(rng):
     toolpath = random_toolpath(rng)
     settings, zones = zip(*(random_setting(rng) for _ in range(int(rng.integers(1, 5)))))
     process = ProcessParameters(settings=settings)
-    placed = apply_settings(toolpath, process, zones, Stack(UP))
+    placed = apply_settings(toolpath, process, zones, UP)
     ground = min(bead.points[:, 2].min() for _, _, bead in toolpath)
     met = 0
     for (layer, number, before), (_, _, bead) in zip(toolpath, placed, strict=True):
@@ -214,101 +202,13 @@ def test_ten_thousand_random_settings():
         check_round(rng)
 
 
-SEAMS = (
-    {},
-    {},
-    {"seam_position": "point", "seam_point": (90.0, 5.0, 1.0)},
-    {"seam_position": "sharpest"},
-    {"seam_position": "hidden", "seam_away_from": (1.0, 0.3, 0.0)},
-    {"seam_position": "spread", "seam_distance": 2.0},
-    {"seam_angle": 1.0, "seam_step": 0.5},
-)
-
-
-def awkward_setting(rng, toolpath):
-    """A setting whose place is empty, outside, or has its border at an end of a bead."""
-    kind = int(rng.integers(3))
-    if kind == 0:
-        return Setting(first_layer=50, travel_speed=3.0)
-    if kind == 1:
-        return Setting(box=(500.0, 0.0, 0.0, 501.0, 1.0, 1.0), wire_feed=9.0)
-    beads = [bead for _, _, bead in toolpath]
-    end = beads[int(rng.integers(len(beads)))].points[int(rng.choice([0, -1]))]
-    reach = rng.uniform(0.5, 30.0, 3)
-    low = end - reach * rng.integers(0, 2, 3)  # each side of the box begins or ends there
-    return Setting(box=(*low, *(low + reach)), travel_speed=2.0, wire_feed="auto")
-
-
-def check_waypoints(rng):
-    """Seams, speeds and wire feeds by place, as rows of text; return the number of settings."""
-    toolpath = random_toolpath(rng)
-    some = [random_setting(rng) for _ in range(int(rng.integers(1, 4)))]
-    some += [(awkward_setting(rng, toolpath), Zone()) for _ in range(int(rng.integers(1, 3)))]
-    some += some[: int(rng.integers(2))]  # the same place twice
-    settings = tuple(
-        dataclasses.replace(setting, **SEAMS[int(rng.integers(len(SEAMS)))]) for setting, _ in some
-    )
-    zones = [zone for _, zone in some]
-    process = ProcessParameters(settings=settings)
-    prevailing = prevailing_settings(toolpath, process, zones, Stack(UP))
-    started = place_seams_by_place(toolpath, process, prevailing, locate_farthest(np.eye(4)))
-    placed = apply_settings(started, process, zones, Stack(UP))
-    placed = set_wire_feed(dataclasses.replace(placed, bead_width=5.0), process, None)
-    motion = deposit_motion(placed)
-    rows = list(csv.DictReader("".join(waypoints.text(motion, by_place=True)).splitlines()))
-    keys = [(int(row["layer"]), int(row["bead"])) for row in rows]
-    points = np.array([[float(row[name]) for name in ("x_mm", "y_mm", "z_mm")] for row in rows])
-    order = [key for k, key in enumerate(keys) if k == 0 or keys[k - 1] != key]
-    assert order == [(layer, number) for layer, number, _ in started]  # each bead once, whole
-    for layer, number, before in started:
-        mine = [k for k, key in enumerate(keys) if key == (layer, number)]
-        assert [int(rows[k]["point"]) for k in mine] == list(range(len(mine)))
-        ends = points[[mine[0], mine[-1]]]
-        assert np.abs(ends - before.points[[0, -1]]).max() <= 0.51e-6
-        size = np.linalg.norm(np.diff(motion.position[mine], axis=0), axis=1)
-        assert abs(size.sum() - before.length) < 1e-6
-        told = np.linalg.norm(np.diff(points[mine], axis=0), axis=1)
-        assert np.abs(told - size).max() < 2e-6  # rows have six decimals
-        own = [rows[k]["setting"] for k in mine]
-        speed = np.array([float(rows[k]["speed_mm_s"]) for k in mine])
-        decided = {entry: settings[int(entry)].travel_speed for entry in set(own) if entry}
-        for entry, value in decided.items():
-            if value is not None:
-                assert np.allclose(speed[[one == entry for one in own]], value)
-    for _, _, bead in started:
-        assert bead.closed == bool(np.array_equal(bead.points[0], bead.points[-1]))
-    before = {(i, j): bead for i, j, bead in toolpath}
-    for i, j, bead in started:  # a moved seam leaves the shape
-        assert bead.length == pytest.approx(before[i, j].length, rel=1e-2)
-    return len(settings)
-
-
-def test_two_hundred_random_settings_keep_beads_whole_in_waypoints():
-    rng, count = np.random.default_rng(39), 0
-    while count < 200:
-        count += check_waypoints(rng)
-
-
-@pytest.mark.long
-def test_ten_thousand_random_settings_keep_beads_whole_in_waypoints():
-    rng, count = np.random.default_rng(int(os.environ.get("ROBUST_SEED", "39"))), 0
-    while count < 10_000:
-        count += check_waypoints(rng)
-
-
 def test_the_notation_of_panels_and_the_json_of_documents_keep_settings():
     rng = np.random.default_rng(3)
-    texts = "layers 0 to 4: travel_speed 4, schedule 3; layers from 7: weave 0; height to 5 and inside Zone: lead_on 0.5; layers 0 to 1: wire_feed auto, seam_position point, seam_point 1 2 3, seam_angle 30"
+    texts = "layers 0 to 4: travel_speed 4, schedule 3; layers from 7: weave 0; height to 5 and inside Zone: lead_on 0.5"
     settings = SETTINGS.read(texts)
     assert settings[0] == Setting(first_layer=0, last_layer=4, travel_speed=4.0, schedule=3)
     assert settings[1] == Setting(first_layer=7, weave=0)
     assert settings[2] == Setting(high=5.0, inside="Zone", lead_on=0.5)
-    assert settings[3].own_values() == {
-        "wire_feed": "auto",
-        "seam_angle": pytest.approx(np.pi / 6.0),
-        "seam_position": "point",
-        "seam_point": (1.0, 2.0, 3.0),
-    }
     some = tuple(random_setting(rng)[0] for _ in range(100))
     for group in (settings, some):
         assert SETTINGS.read(SETTINGS.to_json(group)) == group
@@ -331,5 +231,5 @@ def test_an_open_mesh_has_no_inside():
     process = ProcessParameters(settings=(Setting(inside="zone", weave=1),))
     zone = Zone(Body("zone", solid.vertices, solid.triangles[1:]))
     with pytest.raises(InputError) as error:
-        apply_settings(random_toolpath(np.random.default_rng(1)), process, (zone,), Stack(UP))
+        apply_settings(random_toolpath(np.random.default_rng(1)), process, (zone,), UP)
     assert error.value.code == "OPEN_MESH"

@@ -11,8 +11,6 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.process.seams import locate_azimuth, place_seams_by_place
-from freecad_am.core.strategies.by_place import Stack, prevailing_settings
 from freecad_am.core.strategies.revolution import plan as revolution
 
 NOZZLE = NozzleParameters()
@@ -159,32 +157,6 @@ def test_seams_move_and_beads_run_as_asked(direction, signs):
         if i < 3:
             assert azimuth[-1] - azimuth[0] == pytest.approx(signs[i] * 2.0 * np.pi)
             assert np.diff(bead.parameter) == pytest.approx(np.diff(azimuth))
-
-
-@pytest.mark.parametrize("direction", ["counter-clockwise", "clockwise", "alternate"])
-def test_seams_by_angle_vary_by_place(direction):
-    """Layers 2 and above start at their own angle, the rest stays where it was, to the bit."""
-    process = ProcessParameters(
-        seam=SeamParameters(0.4, 0.1),
-        direction=direction,
-        settings="layers from 2: seam_angle 200, seam_step -20",
-    )
-    usual = plan(CYLINDER, process=process, frame=MOVED, layer_height=10.0)
-    prevailing = prevailing_settings(usual, process, (), Stack(MOVED[:3, 2]))
-    assert prevailing.tolist() == [int(layer >= 2) for layer, _, _ in usual]
-    placed = place_seams_by_place(usual, process, prevailing, locate_azimuth)
-    for (i, _, before), (_, _, bead) in zip(usual, placed, strict=True):
-        if i < 2:
-            assert bead is before
-            continue
-        _, _, azimuth, _ = cylindrical(bead, MOVED)
-        off = azimuth[0] - np.radians(200.0 - 20.0 * i)
-        assert abs((off + np.pi) % (2.0 * np.pi) - np.pi) < 1e-3
-        assert np.sign(bead.parameter[-1] - bead.parameter[0]) == np.sign(
-            before.parameter[-1] - before.parameter[0]
-        )
-        assert bead.length == pytest.approx(before.length, rel=1e-4)
-    assert not placed.issues[len(usual.issues) :]
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,6 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.progress import Watch
 from freecad_am.core.strategies.clearance import clear_by_tilt as clearance_knots
 from freecad_am.core.strategies.clearance import (
     clear_by_tilt as wall_clearance,
@@ -28,6 +27,7 @@ from freecad_am.core.strategies.clearance import (
 )
 from freecad_am.core.strategies.clearance.clear_by_tilt import keep_clear
 from freecad_am.core.strategies.clearance.nozzle_check import nozzle_issues
+from freecad_am.core.strategies.progress import Watch
 from freecad_am.core.strategies.walls import plan as surface
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 

@@ -38,7 +38,7 @@ def test_the_die(person, hand, lesson):
     lesson.ok()
     assert document.Cell.Setup == "rotary-table"
 
-    lesson.step("4. Deposit the beads")
+    lesson.step("4. Lay the beads")
     lesson.tool("Toolpath")
     panel = person.panel("RoboticAM_Toolpath")
     lesson.hand.enter(panel, "BeadWidth", "6 mm")

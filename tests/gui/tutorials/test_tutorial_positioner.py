@@ -56,7 +56,7 @@ def test_the_dome_on_a_positioner(person, hand, lesson):
     lesson.picture("positioner-cell", machine=True)
     lesson.ok()
     assert document.Cell.Status == "up to date" and document.Cell.Setup == "tool-on-robot"
-    lesson.step("4. Deposit the beads")
+    lesson.step("4. Lay the beads")
     lesson.tool("Toolpath")
     person.panel("RoboticAM_Toolpath")
     lesson.ok()

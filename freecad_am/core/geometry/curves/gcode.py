@@ -895,7 +895,7 @@ class _Reader:
             if "R" in words:
                 raise self._error(
                     Text(
-                        "the arc has {} or {}, and also R; use one of these forms",
+                        "the arc has both {} or {} and R; use one of these forms",
                         letters[0],
                         letters[1],
                     )

@@ -197,8 +197,8 @@ def crossing_messages(solid: SolidMesh, min_length: float) -> list[str]:
         return []
     return [
         Text(
-            "{} pairs of triangles intersect, for instance at {}; the union of the enclosed "
-            "volumes counts as inside",
+            "{} pairs of triangles intersect, as at {}; the union of the enclosed volumes counts "
+            "as inside",
             len(pairs.pairs),
             place(pairs.positions[pairs.length.argmax()]),
         )
@@ -244,7 +244,7 @@ def _close_holes(
         position = place(vertices[edges.ends[np.argmax(edges.count > 2)]].mean(axis=0))
         mended.append(
             Text(
-                "{} edges of more than two triangles were split, for instance at {}",
+                "{} edges of more than two triangles were split, as at {}",
                 manifold.split,
                 position,
             )

@@ -13,7 +13,6 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 from scipy.spatial import cKDTree
 
 from ...issues import InputError, Text
-from ...progress import pulse
 from ...types import Array, Index, Mask
 from ..columns import sides
 from ..formatting import place
@@ -358,7 +357,6 @@ def _divide_triangles(
     """Divide triangles (m, 3, 3) for `divide_triangles`, by bisecting the longest side."""
     triangle, blocks = np.arange(len(corner)), []
     while len(corner):
-        pulse()
         if is_kept is not None:
             keep = is_kept(corner)
             corner, triangle = corner[keep], triangle[keep]
@@ -446,7 +444,7 @@ def orient_triangles(
         raise InputError(
             "NOT_ORIENTABLE",
             label,
-            "the mesh has no consistent inside, for instance at {}; model the solid again",
+            "the mesh has no consistent inside, as at {}; model the solid again",
             where,
         )
     return turned

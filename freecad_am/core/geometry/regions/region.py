@@ -17,7 +17,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...issues import NOTE, InputError, Issue, Text
-from ...progress import pulse, pulse_each
 from ...types import Array, Index, Mask
 from ..curves.plane_curve import doubled_area, nearest_on_rings, running_sums, winding
 from ..step_count import turn_segments
@@ -26,8 +25,6 @@ MERGED = 1e-12  # of the extent; closer points are merged
 # of the extent; deviation of a straight border, and minimum width of a region
 STRAIGHTNESS_TOLERANCE = 1e-9
 SLIVER = 1e-12  # of the squared extent; default minimum area of a piece
-MOST_UNITED = 4000  # polygons in one union, which takes a fraction of a second
-LINES_AT_ONCE = 100  # lines whose bands are made between two pulses
 AT_ONCE, BEND = 200, 1.5  # maximum points and total turn (rad) of a line piece to buffer
 _POLYGON, _MULTI_POLYGON = 3, 6  # codes in well-known binary (WKB)
 # shapely join style for mitred corners, and their mitre limit
@@ -215,7 +212,6 @@ class Region:
 
         Arcs of the parallel curve are polylines within the chord error (mm) on the material side.
         """
-        pulse()
         if distance == 0.0:
             return (self,)
         return _parts(self._grown(distance, chord_error), self._sliver, self.sheet)
@@ -505,7 +501,7 @@ def _bands_of(contents: tuple[bytes, ...], widths: tuple[float, ...], chord_erro
     straight = [number for number, line in enumerate(lines) if len(line) == 2]
     bands = [
         _buffered(shapely().geometry.LineString(stretch), width, chord_error)
-        for line, width in pulse_each(zip(lines, widths), LINES_AT_ONCE)
+        for line, width in zip(lines, widths)
         if len(line) > 2
         for stretch in _bends(line)
     ]
@@ -517,34 +513,7 @@ def _bands_of(contents: tuple[bytes, ...], widths: tuple[float, ...], chord_erro
             _capsules(edges[segments == count], radii[segments == count], count)
             for count in set(segments.tolist())
         ]
-    pulse()
-    if len(bands) + len(straight) <= MOST_UNITED:
-        return shapely().ops.unary_union(bands)
-    return _united([polygon for band in pulse_each(bands) for polygon in _polygons(band)])
-
-
-def _united(polygons: list[Any]) -> Any:
-    """Return the union of polygons, in blocks of neighbours with a pulse before each.
-
-    One call of the library for all polygons of a large layer would take many seconds.
-    """
-    while len(polygons) > MOST_UNITED:
-        boxes = np.array([polygon.bounds for polygon in polygons])
-        middles = boxes[:, :2] + boxes[:, 2:]
-        strips = math.ceil(math.sqrt(len(polygons) / MOST_UNITED))
-        strip = np.argsort(np.argsort(middles[:, 0], kind="stable")) * strips // len(polygons)
-        order = np.lexsort((middles[:, 1], strip)).tolist()
-        blocks = [order[k : k + MOST_UNITED] for k in range(0, len(order), MOST_UNITED)]
-        united = [
-            shapely().ops.unary_union([polygons[k] for k in block]) for block in pulse_each(blocks)
-        ]
-        merged = [polygon for shape in united for polygon in _polygons(shape)]
-        few_overlap = len(merged) > 0.5 * len(polygons)
-        polygons = merged
-        if few_overlap:
-            break
-    pulse()
-    return shapely().ops.unary_union(polygons)
+    return shapely().ops.unary_union(bands)
 
 
 def _capsules(edges: Array, radii: Array, segments: int) -> Any:

@@ -18,7 +18,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...progress import pulse
 from ...types import Array, Index, Mask
 from .region import Region
 
@@ -270,7 +269,6 @@ def _measure(border: _Border, pieces: _Pieces, places: _Places, cap: float) -> t
     radii[convex] = 0.0
     open_ = np.flatnonzero(~convex)
     for _ in range(MAX_SHRINKS):
-        pulse()
         if not len(open_):
             break
         foot, direction, radius = feet[open_], directions[open_], radii[open_]

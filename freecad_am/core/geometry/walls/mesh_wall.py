@@ -418,8 +418,8 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
         size = max((hole.size for hole in plain.closed), default=0.0)
         mended.append(
             Text(
-                "{} intersecting triangles were removed, for instance at {}, leaving holes up to "
-                "{:.3g} mm across",
+                "{} intersecting triangles were removed, as at {}, leaving holes up to {:.3g} mm "
+                "across",
                 plain.cut_out,
                 position,
                 size,

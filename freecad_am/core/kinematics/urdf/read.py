@@ -275,7 +275,7 @@ class Urdf:
             if mimic is not None:
                 raise mimic.bad(
                     Text(
-                        "the joint {!r} mimics another joint, which a serial chain cannot do; "
+                        "the joint {!r} mimics another joint, which a serial chain cannot; "
                         "remove the mimic tag",
                         joint.text("name"),
                     )

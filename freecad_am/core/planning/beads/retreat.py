@@ -60,7 +60,6 @@ def gone_back(bead: Bead, length: float) -> Bead:
     def both(column: Array | None) -> Array | None:
         return None if column is None else extended(retreat.of)(column)
 
-    again = extended(lambda column: column[::-1][: retreat.past])
     # compute the tangents first: near the reversal the extended points look straight
     tangents = _tangents(bead)
     back = -tangents[::-1, ::-1]
@@ -74,11 +73,13 @@ def gone_back(bead: Bead, length: float) -> Bead:
         tool=extended(directions)(bead.tool),
         # the parameter keeps increasing, because it is the position along the bead
         parameter=extended(lambda column: 2.0 * column[-1] - retreat.of(column))(bead.parameter),
-        speed=again(bead.speed),
+        speed=np.concatenate([bead.speed, bead.speed[::-1][: retreat.past]]),
+        settings=None
+        if bead.settings is None
+        else np.concatenate([bead.settings, bead.settings[::-1][: retreat.past]]),
         width=both(bead.width),
         height=both(bead.height),
         external=both(bead.external),
-        **bead.map_segments(again),
     )
 
 

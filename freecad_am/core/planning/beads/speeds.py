@@ -136,7 +136,7 @@ def corners_slowed(
             WARNING,
             SLOWED,
             Text(
-                "the deposit slows down on {} short sections, {:.3g} mm in total, here to {:.3g} "
+                "the deposit is slowed at {} short places, {:.3g} mm in total, here to {:.3g} "
                 "mm/s, the limit of the axes; over-deposition is up to {:.2g} mm of bead{}",
                 len(slow_sections),
                 sum(section.length for section in slow_sections),

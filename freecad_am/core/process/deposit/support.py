@@ -106,19 +106,11 @@ def _unsupported_at_a_side(
     return np.union1d(*open_sides)
 
 
-def _depth(toolpath: Toolpath, layers: Index) -> Array | float:
-    """Return the height, mm, of the layer below each of `layers` (n,); of all layers if they have one."""
-    if not toolpath.adapts_heights:
-        return toolpath.layer_height
-    return np.asarray(toolpath.layer_heights[np.maximum(layers - 1, 0)])
-
-
 def _unsupported(
     pieces: Pieces, toolpath: Toolpath, is_on_ground: Held, some: Index, aside: Array | None = None
 ) -> Index:
     """Return the unsupported pieces of `some`, at the midpoints or offset by `aside` (n, 3), mm."""
-    height = _depth(toolpath, pieces.layer[some])
-    below = np.broadcast_to(np.asarray(height)[..., None], (len(some), 1)) * pieces.build[some]
+    height = toolpath.layer_height
     position = pieces.middle[some] if aside is None else pieces.middle[some] + aside
     open_ = np.arange(len(some))
     layer = pieces.layer[some]
@@ -133,7 +125,10 @@ def _unsupported(
         if not len(selection) or low == high:
             continue
         tree = cKDTree(pieces.middle[low:high])
-        nearest = np.asarray(tree.query(position[selection] - below[selection])[1]) + low
+        nearest = (
+            np.asarray(tree.query(position[selection] - height * pieces.build[some[selection]])[1])
+            + low
+        )
         is_supported[selection] = _below(
             pieces, some[selection], position[selection], nearest, toolpath
         )
@@ -143,7 +138,9 @@ def _unsupported(
         return np.zeros(0, dtype=np.intp)
     tree = cKDTree(pieces.middle)
     near = np.asarray(
-        tree.query(position[open_] - below[open_], k=min(FIRST_ASKED, len(pieces)))[1]
+        tree.query(
+            position[open_] - height * pieces.build[some[open_]], k=min(FIRST_ASKED, len(pieces))
+        )[1]
     )
     for column in near.reshape(len(open_), -1).T:  # a spiral supports itself
         selection = some[open_]
@@ -157,7 +154,6 @@ def _unsupported(
     if not len(open_):
         return np.zeros(0, dtype=np.intp)
     wide = 0.5 * float(pieces.width.max()) * (1.0 + 2.0 * GRACE)
-    height = toolpath.layer_height  # of the highest layers, a bound
     radius = math.hypot(wide, 0.5 * (REACH - LEVEL_WITH) * height) + toolpath.chord_error
     radius = max(radius, REACH * height * (1.0 + 1e-9)) if pieces.closing.any() else radius
     centre = position[open_] - 0.5 * (REACH + LEVEL_WITH) * height * pieces.build[some[open_]]
@@ -189,7 +185,7 @@ def _chunks(tree: cKDTree, centre: Array, radius: float) -> Iterator[Index]:
 
 def _earlier(pieces: Pieces, rows: Index, other_rows: Index, toolpath: Toolpath) -> Mask:
     """Whether other pieces are earlier and not in an adjacent bead of the layer; a spiral may support itself."""
-    back = BACK * np.hypot(0.5 * pieces.width[rows], REACH * _depth(toolpath, pieces.layer[rows]))
+    back = BACK * np.hypot(0.5 * pieces.width[rows], REACH * toolpath.layer_height)
     same = pieces.bead[rows] == pieces.bead[other_rows]
     is_earlier = np.where(
         same,
@@ -210,7 +206,7 @@ def _below(
     square = np.einsum("ij,ij->i", gap, gap)
     deep = np.einsum("ij,ij->i", gap, build)
     aside = np.sqrt(np.maximum(square - deep * deep, 0.0))
-    height = _depth(toolpath, pieces.layer[rows])
+    height = toolpath.layer_height
     max_depth = REACH * height * (1.0 + 1e-6) + toolpath.chord_error
     max_aside = 0.5 * pieces.width[other_rows] * (1.0 + 2.0 * GRACE) + toolpath.chord_error
     under = (deep >= LEVEL_WITH * height) & (deep <= max_depth) & (aside <= max_aside)

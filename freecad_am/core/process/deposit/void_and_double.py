@@ -17,7 +17,6 @@ from ...geometry.regions.region import regions
 from ...geometry.regions.several import grow_regions
 from ...geometry.section import Coverage, Section
 from ...issues import WARNING, Issue, Text
-from ...progress import pulse, pulse_each
 from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array, Integers, Mask
 
@@ -172,9 +171,7 @@ def draw(
     inside = raster.inside(section.edges)
     if not inside.any():
         return None
-    pulse()
     shapes, depth = raster.counts(narrow)
-    pulse()
     covered = shapes > 0
     single = raster.pixel**2 * np.count_nonzero(covered)
     if share < 1.0:
@@ -255,7 +252,7 @@ def measure(toolpath: Toolpath, max_void: float) -> Toolpath:
         worst_layers(coverages)
     )
     pictures: dict[bytes, Picture] = {}  # recent rasters, because equal layers often alternate
-    for number in pulse_each(sorted(placed)):
+    for number in sorted(placed):
         section = toolpath.layers[number].section
         assert section is not None
         key = _key(toolpath.layers[number], section, toolpath)
@@ -277,7 +274,7 @@ def _measure(toolpath: Toolpath) -> dict[int, Coverage]:
     """Return the coverage of each layer with a section, by index; equal layers are measured once."""
     coverages: dict[int, Coverage] = {}
     measured: dict[bytes, Coverage | None] = {}
-    for number, layer in enumerate(pulse_each(toolpath.layers)):
+    for number, layer in enumerate(toolpath.layers):
         if layer.section is None:
             continue
         key = _key(layer, layer.section, toolpath)
@@ -319,7 +316,7 @@ def _issues(layers: Sequence[Layer], max_void: float) -> list[Issue]:
             continue
         assert coverage.void_place is not None
         text = Text(
-            "beads leave {:.3g} % of the section void, the largest void {:.3g} mm wide at {}; "
+            "beads leave {:.3g} % of the section void, the largest place {:.3g} mm wide at {}; "
             "strategy.max_void allows {:.3g} %; set strategy.widths to adaptive, use fill: "
             "contours, narrower beads, or another fill_angle",
             100.0 * coverage.void,

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...geometry.columns import dots, lengths, unit_rows
 from ...parameters.process import ProcessParameters
-from ...toolpath import Bead, Toolpath, settings_of, wire_of
+from ...toolpath import Bead, Toolpath, settings_of
 from ...types import Array, Index, Mask
 from ..deposit.pieces import cut_beads, join_pieces
 from ..deposit.spacing import is_spiral, turns_of
@@ -198,10 +198,8 @@ def sections(bead: Bead, toolpath: Toolpath, process: ProcessParameters) -> Arra
         process.at_place(bead.role.bead_class, active).schedule for active in combinations.tolist()
     ]
     by_wire = np.array([schedule == process.schedule for schedule in schedules])[np.ravel(index)]
-    if bead.wire_feeds is not None:
-        fed = process.wire.section * wire_of(bead)[1:] / bead.speed[1:]
-    elif bead.wire_share is not None:
-        fed = process.wire.section * bead.wire_share[1:]
+    if bead.wire_share is not None:
+        fed = np.full(len(bead) - 1, process.wire.section * bead.wire_share)
     elif toolpath.wire_feed:
         fed = process.wire.section * toolpath.wire_feed / bead.speed[1:]
     else:
@@ -242,9 +240,7 @@ def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
         pieces.length,
         pieces.width,
         _volumes(toolpath, process, bead, arc, pieces.length),
-        toolpath.layer_heights[pieces.layer]
-        if toolpath.adapts_heights
-        else np.full(len(bead), toolpath.layer_height),
+        np.full(len(bead), toolpath.layer_height),
         arc,
         np.where(closed, bead_lengths, np.inf)[bead],
         _ends(pieces.travel, bead, closed),

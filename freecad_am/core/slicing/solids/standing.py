@@ -41,8 +41,8 @@ def refuse_overlaps(groups: Sequence[Group], chord_error: float) -> None:
                     raise InputError(
                         "OVERLAP",
                         body.name,
-                        "the solid and {} overlap, for instance at {}, and the overlap would be "
-                        "deposited twice; fuse the two solids, or move one of them",
+                        "the solid and {} overlap, as at {}, and the overlap would be deposited "
+                        "twice; fuse the two solids, or move one of them",
                         second_body.name,
                         place(overlap),
                     )

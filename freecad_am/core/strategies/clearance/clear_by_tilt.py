@@ -22,10 +22,10 @@ from ...geometry.walls.surface import dot
 from ...issues import InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
-from ...progress import Watch
 from ...slicing.wall_directions import limit_turns, turn_rates
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
+from ..progress import Watch
 from .nozzle_check import (
     CLEARANCE,
     Space,

@@ -25,9 +25,9 @@ from ...geometry.tie_breaking import index_of_minimum, is_tied
 from ...issues import Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
-from ...progress import Watch
 from ...toolpath import Toolpath
 from ...types import Array, Index, Mask
+from ..progress import Watch
 from .nozzle_check import CAP, Space, space_of
 
 BARRED = 1e9  # cost of a barred state; finite, so that a chain without a feasible path has a least bad path

@@ -21,12 +21,12 @@ from ...parameters.cell import NozzleParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import RevolutionParameters
 from ...process import bead_order, classes
-from ...progress import Progress, silent
 from ...slicing import revolution
 from ...toolpath import Bead, BeadRole, Layer, MotionRules, Toolpath
 from ...types import Array, Index
 from .. import estimated_size
 from ..clearance.nozzle_check import SEAM
+from ..progress import Progress, silent
 from . import clearance
 from .clearance import Deposit, Tips
 from .tilt import Tilting
@@ -106,12 +106,10 @@ def plan(
     tilting = Tilting(wall, strategy, leaning_build, nozzle, under, process.bead_width)
     issues: list[Issue] = []
     if strategy.path == "spiral":
-        if strategy.timing.least > 0.0:
+        if strategy.min_layer_time > 0.0:
             raise InputError(
                 "BAD_VALUE",
-                "strategy.min_layer_time"
-                if strategy.min_layer_time > 0.0
-                else "strategy.layer_time.least",
+                "strategy.min_layer_time",
                 "a spiral has no layers to wait between; use path: layers, a slower "
                 "process.travel_speed, or remove the waiting time",
             )

@@ -24,7 +24,7 @@ from ...geometry.curves.plane_curve import (
 from ...geometry.frames import TURN
 from ...geometry.on_hub import Base, SolidsOnHub
 from ...geometry.regions.region import select_significant, simplified
-from ...layers.plane_field import Levels, PlaneLayer, group_of, slabs
+from ...layers.plane_field import PlaneLayer, group_of, slabs
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
@@ -245,16 +245,14 @@ class BeadMaker:
     ) -> None:
         self._parameters = strategy, build, process, model
         self._may_move = strategy.deflection == 0.0
-        self._made: dict[
-            tuple[PlaneCurve, str, float | None], tuple[Base, PlaneLayer, MadeBead]
-        ] = {}
+        self._made: dict[tuple[PlaneCurve, str], tuple[Base, PlaneLayer, MadeBead]] = {}
 
     def bead_of(self, curve: PlaneCurve, layer: Slice) -> MadeBead:
         """Return the bead of a curve in a layer."""
         surface = layer.surface
         if not self._may_move or not isinstance(surface, PlaneLayer):
             return bead_of(curve, layer, *self._parameters)
-        key = curve, classes.fill_bead_class(curve.kind, layer.number), surface.layer_height
+        key = curve, classes.fill_bead_class(curve.kind, layer.number)
         base, plane, made_bead = self._made.get(key, (None, None, None))
         if base is not layer.base or plane is None or made_bead is None:
             made_bead = bead_of(curve, layer, *self._parameters)
@@ -448,9 +446,7 @@ def volumes(
     )
 
 
-def slab_volumes(
-    solids: SolidsOnHub, strategy: FilledParameters, levels: Levels | None = None
-) -> Array | None:
+def slab_volumes(solids: SolidsOnHub, strategy: FilledParameters) -> Array | None:
     """Return the volumes of solids between the planes of their layers.
 
     Parameters
@@ -459,8 +455,6 @@ def slab_volumes(
         The solids.
     strategy : FilledParameters
         Layer height and kind of layers.
-    levels : Levels or None, optional
-        Layers that adapt their heights; None for layers of one height.
 
     Returns
     -------
@@ -470,8 +464,7 @@ def slab_volumes(
     group = group_of(solids)
     if group is None or strategy.has_curved_layers or strategy.follows_guide:
         return None  # curved layers may begin on a plane too
-    height = strategy.layer_height if levels is None else levels.heights
-    return slabs(group, height, np.zeros((0, 3)), np.zeros(0)).part_volume
+    return slabs(group, strategy.layer_height, np.zeros((0, 3)), np.zeros(0)).part_volume
 
 
 def twice_volume(

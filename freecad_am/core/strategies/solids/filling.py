@@ -18,7 +18,7 @@ from ...filling.cover import Cover, measure_cover, total
 from ...filling.even_widths import fit_beads, narrow_beads, share_widths
 from ...filling.fill import LINK, Gaps, fill, open_places
 from ...filling.sparse import Infill
-from ...filling.zigzag import adapt_lines, is_narrow
+from ...filling.zigzag import adapt_lines
 from ...geometry.curves.plane_curve import nearest_among
 from ...geometry.regions.raster import Stroke
 from ...geometry.regions.region import Region, join
@@ -27,14 +27,12 @@ from ...geometry.regions.strip import Period, Strip
 from ...geometry.section import Section
 from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text, Word
 from ...layers.margins import ARCS
-from ...layers.plane_field import PlaneLayer
 from ...layers.surface import Slice
 from ...parameters.filled import FILLS, FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.bead_model import BeadModel
 from ...process.deposit.void_and_double import draw
 from ...process.wire import model_wire_feed
-from ...progress import pulse_each
 from ...types import Array
 
 Same = TypeVar("Same", bound=FilledParameters)
@@ -89,29 +87,6 @@ class _Filling(NamedTuple):
     infill: Infill
 
 
-class _Adapted(NamedTuple):
-    """Beads of adaptive width, and their faults, see `_fault`.
-
-    cover: coverage, None if not measured. gaps: open gaps with their widths.
-    """
-
-    curves: Sequence[PlaneCurve]
-    fault: float
-    cover: Cover | None = None
-    gaps: Sequence[tuple[Array, float]] = ()
-
-    def move(self, by: Array) -> _Adapted:
-        """Return the beads translated by (2,) mm."""
-        return self._replace(curves=_moved(self.curves, by), gaps=_moved_gaps(self.gaps, by))
-
-    def measured(self, region: Region, beads: Beads) -> _Adapted:
-        """Return the beads with their coverage and gaps in a region."""
-        if self.cover is not None:
-            return self
-        cover = measure_cover(region, self.curves, beads)
-        return self._replace(cover=cover, gaps=open_places(region, self.curves, beads))
-
-
 class _Picture(NamedTuple):
     """A region with its filling, beads, open gaps with their widths, and coverage."""
 
@@ -122,25 +97,15 @@ class _Picture(NamedTuple):
     cover: Cover
     bare: list[Bare]
     unfilled: list[Bare]  # areas inside the walls without a line of the sparse pattern
-    contours: _Adapted | None  # of a region too narrow for lines; the fill angle has no effect
 
     def move(self, by: Array) -> _Picture:
         """Return the picture translated by (2,) mm."""
         return self._replace(
-            curves=_moved(self.curves, by),
-            gaps=_moved_gaps(self.gaps, by),
-            contours=self.contours and self.contours.move(by),
+            curves=[replace(curve, points=curve.points + by) for curve in self.curves],
+            gaps=[(point + by, width) for point, width in self.gaps],
             bare=[place._replace(point=place.point + by) for place in self.bare],
             unfilled=[room._replace(point=room.point + by) for room in self.unfilled],
         )
-
-
-def _moved(curves: Sequence[PlaneCurve], by: Array) -> list[PlaneCurve]:
-    return [replace(curve, points=curve.points + by) for curve in curves]
-
-
-def _moved_gaps(gaps: Sequence[tuple[Array, float]], by: Array) -> Gaps:
-    return [(point + by, width) for point, width in gaps]
 
 
 class _Outline(NamedTuple):
@@ -200,7 +165,7 @@ class Pictures:
         covers: list[Cover] = []
         bare: list[Bare] = []
         unfilled: list[Bare] = []
-        for region in pulse_each(layer.regions):
+        for region in layer.regions:
             try:
                 picture = self._picture(layer, region, filling)
             except InfeasibleError as error:
@@ -318,8 +283,6 @@ class Pictures:
         infill = Infill()
         if strategy.fill_density < 1.0:
             height = layer.number * strategy.layer_height if strategy.fill == "gyroid" else 0.0
-            if height and strategy.adapts_heights and isinstance(layer.surface, PlaneLayer):
-                height = layer.surface.height
             infill = Infill(
                 strategy.fill_density, height, strategy.fill_angle - turned, layer.buried
             )
@@ -335,38 +298,23 @@ class Pictures:
                 region, filling._replace(infill=Infill()) if layer.buried == () else filling, flat
             )
         period, outline = layer.surface.period, _outline(region)
+        has_direction = self._strategy.has_direction
         may_move = flat and filling.infill.density == 1.0  # sparse patterns have a fixed position
-        contours = None
         for similar in outline.similar():
-            for earlier in self._pictures.get((period, similar), ()):
-                picture = self._equal_picture(earlier, region, filling, may_move)
-                if picture is None:
+            for picture in self._pictures.get((period, similar), ()):
+                assert isinstance(picture.region, Region)
+                if not _same(picture.filling, filling, has_direction):
                     continue
-                if _same(picture.filling, filling, self._strategy.has_direction):
-                    return picture
-                contours = contours or picture.contours
-        picture = self._fill_region(region, filling, flat, contours)
+                by = region.middle - picture.region.middle
+                if np.abs(by).max() <= TOLERANCE_MM:
+                    by = np.zeros(2)
+                elif not may_move:
+                    continue
+                if _equal([border + by for border in picture.region.borders()], region.borders()):
+                    return self._move(picture, by) if by.any() else picture
+        picture = self._fill_region(region, filling, flat)
         self._pictures[period, outline].append(picture)
         return picture
-
-    def _equal_picture(
-        self, picture: _Picture, region: Region, filling: _Filling, may_move: bool
-    ) -> _Picture | None:
-        """Return the picture of an equal region, translated, with any fill angle; None otherwise.
-
-        may_move: whether equal regions may be in different places.
-        """
-        assert isinstance(picture.region, Region)
-        if not _same(picture.filling, filling, has_direction=False):
-            return None
-        by = region.middle - picture.region.middle
-        if np.abs(by).max() <= TOLERANCE_MM:
-            by = np.zeros(2)
-        elif not may_move:
-            return None
-        if not _equal([border + by for border in picture.region.borders()], region.borders()):
-            return None
-        return self._move(picture, by) if by.any() else picture
 
     def _move(self, picture: _Picture, by: Array) -> _Picture:
         """Translate a picture by (2,) mm; equal translations return the same object."""
@@ -378,17 +326,8 @@ class Pictures:
             self._moved[place] = picture.move(by)
         return self._moved[place]
 
-    def _fill_region(
-        self,
-        region: Region | Strip,
-        filling: _Filling,
-        flat: bool,
-        contours: _Adapted | None = None,
-    ) -> _Picture:
-        """Fill a region; intentional gaps are not reported.
-
-        flat: no curve closes around the surface. contours: as in `_Picture`, if known.
-        """
+    def _fill_region(self, region: Region | Strip, filling: _Filling, flat: bool) -> _Picture:
+        """Fill a region; intentional gaps are not reported. flat: no curve closes around the surface."""
         strategy, (beads, angle, infill) = self._strategy, filling
         sparse, (min_share, max_share) = infill.density < 1.0, strategy.spacing_range
         share = 1.0
@@ -406,27 +345,29 @@ class Pictures:
         usual_curves = curves
         if isinstance(region, Region) and not sparse:
             curves = [*share_widths(region, curves, beads, share, min_share, max_share)]
-        cover = None
+        cover = measure_cover(region, curves, filling.beads, infill.density)
         narrowing = (
             not sparse
             and flat
             and strategy.spacing_range == FULL_RANGE
             and strategy.narrowest < 1.0
         )
-        if narrowing:
-            cover = measure_cover(region, curves, beads)
-            over = cover.over(beads.spacing * math.fsum(map(_weighed, curves)))
-            if over > OVERLAP_SHARE * cover.area:
-                # limits the width to the available space and centres the curves in it
-                curves, cover = narrow_beads(curves, beads, angle, strategy.narrowest), None
+        if (
+            narrowing
+            and cover.over(filling.beads.spacing * math.fsum(map(_weighed, curves)))
+            > OVERLAP_SHARE * cover.area
+        ):
+            curves = narrow_beads(
+                curves, filling.beads, angle, strategy.narrowest
+            )  # limits the width to the available space and centres the curves in it
+            cover = measure_cover(region, curves, filling.beads)
         adapted = None
         if strategy.adapts_widths and flat and isinstance(region, Region):
-            contours, adapted = _adapt_widths(region, curves, beads, strategy, angle, contours)
-        if adapted is not None:
-            curves, cover, gaps = adapted.curves, adapted.cover, list(adapted.gaps)
+            adapted = _adapt_widths(region, curves, filling.beads, strategy, angle)
+        if adapted:
+            curves, cover, gaps = adapted
         else:
             gaps = [] if sparse else open_places(region, usual_curves, beads)
-        cover = cover or measure_cover(region, curves, filling.beads, infill.density)
         bare = [] if sparse or not isinstance(region, Region) else bare_parts(region, curves, beads)
         bare_places = [
             Bare(bare_part.area, bare_part.width, bare_part.inside()) for bare_part, _ in bare
@@ -434,7 +375,7 @@ class Pictures:
         unfilled = []
         if sparse and isinstance(region, Region):
             unfilled = _unfilled(region, curves, beads, strategy.rounds)
-        return _Picture(region, filling, curves, gaps, cover, bare_places, unfilled, contours)
+        return _Picture(region, filling, curves, gaps, cover, bare_places, unfilled)
 
 
 def _adapt_widths(
@@ -443,35 +384,24 @@ def _adapt_widths(
     beads: Beads,
     strategy: FilledParameters,
     angle: float,
-    contours: _Adapted | None,
-) -> tuple[_Adapted | None, _Adapted | None]:
-    """Return contours and beads of adaptive width; without beads if they do not fill the region better.
+) -> tuple[Sequence[PlaneCurve], Cover, Gaps] | None:
+    """Return beads of adaptive width with cover and gaps; None if they do not fill the region better.
 
-    angle: direction of lines, rad. contours: as in `_Picture`, if known; they are returned for an equal region.
+    angle: direction of lines, rad.
     """
     fault = _fault(region, curves, beads)
     if fault < WELL_FILLED:
-        return contours, None
+        return None
     law = BeadLaw(2.0 * beads.inset, beads.spacing, strategy.narrowest, strategy.widest)
-    has_contours = strategy.rounds_alone or is_narrow(region, law, int(strategy.rounds))
-    if contours is not None:
-        adapted = contours
-    elif strategy.rounds_alone:
-        adapted = _judged(region, adapt_contours(region, beads, law), beads)
+    if strategy.rounds_alone:
+        adapted = adapt_contours(region, beads, law)
     else:
         link = (strategy.longest_link or LINK) * beads.spacing
         longest_link = link if FILLS[strategy.fill].is_linked else None
-        lines = adapt_lines(region, beads, law, angle, int(strategy.rounds), longest_link)
-        adapted = _judged(region, lines, beads)
-    is_better = adapted.fault <= BETTER * fault
-    if is_better:
-        adapted = adapted.measured(region, beads)
-    return adapted if has_contours else None, adapted if is_better else None
-
-
-def _judged(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> _Adapted:
-    """Return beads with their faults, which are infinite without beads."""
-    return _Adapted(curves, _fault(region, curves, beads) if curves else math.inf)
+        adapted = adapt_lines(region, beads, law, angle, int(strategy.rounds), longest_link)
+    if not adapted or _fault(region, adapted, beads) > BETTER * fault:
+        return None
+    return adapted, measure_cover(region, adapted, beads), open_places(region, adapted, beads)
 
 
 def _fault(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> float:
@@ -533,7 +463,7 @@ def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
         WARNING,
         "NO_BEAD",
         Text(
-            "{} region(s) are too narrow for a bead, {:.3g} mm^2 in total; the largest, {:.3g} "
+            "{} place(s) are too narrow for a bead, {:.3g} mm^2 in total; the largest, {:.3g} "
             "mm^2 and {:.3g} mm wide, is at {}; use narrower beads, lower strategy.narrowest, or "
             "make the part thicker there",
             len(bare),

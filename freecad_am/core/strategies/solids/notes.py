@@ -68,7 +68,7 @@ def notes(
     )
     issues += _single_layers(layers, strategy)
     waits = [layer.wait for layer in layers if layer.wait > 0.0]
-    if waits and strategy.timing.to_wait > 0.0:
+    if waits and strategy.min_layer_time > 0.0:
         issues.append(
             Issue(
                 NOTE,
@@ -81,7 +81,7 @@ def notes(
                     len(layers),
                     max(waits),
                     sum(waits),
-                    strategy.timing.to_wait,
+                    strategy.min_layer_time,
                     strategy.wait,
                 ),
             )
@@ -154,15 +154,7 @@ def _for_one_speed(strategy: FilledParameters, high: bool) -> str:
     high: whether heights differ, as in layers along a guide.
     """
     settings = [
-        *(
-            [
-                Text("one strategy.layer_height")
-                if strategy.adapts_heights
-                else "strategy.layers: planes"
-            ]
-            if high
-            else []
-        ),
+        *(["strategy.layers: planes"] if high else []),
         *(["strategy.fill: contours"] if strategy.fill == "connected" else []),
         *(
             [Text("a spacing range of {0} to {0}", "100 %")]

@@ -25,22 +25,22 @@ from ...geometry.on_hub import Group, SolidsOnHub, solids_beyond
 from ...geometry.regions.region import Region
 from ...geometry.section import Section
 from ...geometry.step_count import step_counts
-from ...issues import NOTE, WARNING, InputError, Issue, Text
+from ...issues import WARNING, InputError, Issue, Text
 from ...layers import field
 from ...layers.field import Stack
-from ...layers.plane_field import CLEARANCE_SHARE, EXACT, Flat, Levels, count
+from ...layers.plane_field import CLEARANCE_SHARE, EXACT, Flat
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
-from ...parameters.filled import FilledParameters, SolidParameters
+from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.bead_model import BeadModel
 from ...process.bead_order import Course, IslandOrder, RankedBead, order_beads
 from ...process.cooling_waits import add_waits
 from ...process.seams import SeamPlacer
-from ...progress import Progress, pulse_each, silent
 from ...toolpath import Bead, Checks, Layer, MotionRules, Toolpath
 from ...types import Array, Mask
 from .. import estimated_size
+from ..progress import Progress, silent
 from .beads import BeadMaker, MadeBead, slab_volumes, start_beads, twice_volume, volumes
 from .filling import Bare, Pictures, bead_width, over_fed, spaced
 from .notes import notes
@@ -275,7 +275,6 @@ def plan(
     Dai 2020.
     """
     _refuse_mode(solids.has_plane_layers(), strategy, build)
-    _refuse_model(strategy, model)
     strategy = spaced(strategy, process)
     estimated_size.refuse_absurd(
         estimated_size.solids_size(solids, strategy, strategy.bead_spacing),
@@ -295,7 +294,7 @@ def plan(
     heights: dict[
         int, list[float]
     ] = {}  # minimum and maximum height of each uneven layer over all stacks
-    order = IslandOrder(as_below=strategy.timing.least > 0.0)
+    order = IslandOrder(as_below=strategy.min_layer_time > 0.0)
     stacks = list(field.stacks(solids, strategy))
     for stack_number, stack in enumerate(stacks):
         order.below = None  # this stack has no layer yet
@@ -321,9 +320,7 @@ def plan(
                 )
             )
             made_in_layer = start_beads(
-                [maker.bead_of(curve, layer) for curve in pulse_each(picture.curves)],
-                placer,
-                layer.number,
+                [maker.bead_of(curve, layer) for curve in picture.curves], placer, layer.number
             )
             made_beads += made_in_layer
             beads = [made_bead.bead for made_bead in made_in_layer]
@@ -347,12 +344,9 @@ def plan(
             strategy.least_bead,
         )
     course = order_beads(ranked, strategy.order)
-    layers = add_waits(course, strategy.wait, process.rapid_speed, strategy.timing.to_wait)
+    layers = add_waits(course, strategy.wait, process.rapid_speed, strategy.min_layer_time)
     layers = add_sections(layers, sections, course)
-    layers = add_heights(layers, stacks, course)
-    levels = stacks[0].levels
-    missed = uncut(solids, strategy, ranked, width, levels)
-    adapted = None if levels is None else compare_heights(layers, levels, strategy)
+    missed = uncut(solids, strategy, ranked, width)
     all_issues = [
         *solids.issues,
         *[_numbered(issue, stack, course) for stack, issue in issues],
@@ -360,7 +354,6 @@ def plan(
         *uncut_issues(missed, strategy),
         *over_fed(strategy, process, model, width),
         *notes(made_beads, layers, strategy, build, process, model),
-        *height_notes(layers, adapted, strategy),
     ]
     return Toolpath(
         layers,
@@ -378,10 +371,9 @@ def plan(
                 strategy,
                 covers,
                 sum(piece.bare for piece in missed),
-                slab_volumes(solids, strategy, levels),
+                slab_volumes(solids, strategy),
                 numbers,
             ),
-            adapted=adapted,
             twice=twice_volume(made_beads, strategy, covers, width),
             uneven=np.array(
                 [
@@ -425,19 +417,6 @@ def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirection
             "build_direction.mode",
             "{} does not apply to solids on a hub, which grow along its normals; use local",
             build.mode,
-        )
-
-
-def _refuse_model(strategy: FilledParameters, model: BeadModel | None) -> None:
-    """Raise InputError NOT_YET for adapted layers of beads whose height follows from their width."""
-    if strategy.adapts_heights and model is not None:
-        raise InputError(
-            "NOT_YET",
-            "process.bead_model",
-            "a bead model gives all beads of one width the same height, but layers are {:g} to "
-            "{:g} mm high; use bead_model: none, or one strategy.layer_height",
-            strategy.lowest_height,
-            strategy.layer_height,
         )
 
 
@@ -525,117 +504,6 @@ def add_sections(
     )
 
 
-# ---- Layers that adapt their heights to the part
-
-
-def add_heights(
-    layers: Sequence[Layer], stacks: Sequence[Stack], course: Course
-) -> tuple[Layer, ...]:
-    """Store in each layer its height; layers of one height are unchanged.
-
-    Parameters
-    ----------
-    layers : sequence of Layer
-        All layers of the toolpath, in the order of the course.
-    stacks : sequence of Stack
-        The stacks with their levels.
-    course : Course
-        Maps layers of stacks to layers of the toolpath.
-
-    Returns
-    -------
-    tuple of Layer
-        The layers.
-    """
-    by_layer: dict[int | None, float] = {}
-    for stack in stacks:
-        for stack_layer, height in enumerate(() if stack.levels is None else stack.levels.heights):
-            by_layer[course.number(stack.group, stack.solid, stack_layer)] = float(height)
-    return tuple(
-        replace(layer, height=by_layer[number]) if number in by_layer else layer
-        for number, layer in enumerate(layers)
-    )
-
-
-def compare_heights(
-    layers: Sequence[Layer], levels: Levels, strategy: FilledParameters
-) -> tuple[float, float, int, float]:
-    """Compare adapted layers with layers of one height that have the same largest cusp.
-
-    Both have the same volume, and the travel speed of the process at their nominal layer height.
-
-    Parameters
-    ----------
-    layers : sequence of Layer
-        The layers.
-    levels : Levels
-        Their heights.
-    strategy : FilledParameters
-        The greatest layer height.
-
-    Returns
-    -------
-    cusp : float
-        Largest cusp, mm.
-    height : float
-        Layer height, mm, with the same cusp.
-    layer_count : int
-        Number of layers of this height.
-    seconds : float
-        Time to deposit them, s.
-    """
-    assert isinstance(strategy, SolidParameters)
-    constant = replace(strategy, layer_height=levels.constant, least_height=None, cusp=None)
-    seconds = sum(layer.deposit_time for layer in layers) * strategy.layer_height / levels.constant
-    return levels.cusp, levels.constant, count(levels.top, constant), seconds
-
-
-def height_notes(
-    layers: Sequence[Layer],
-    adapted: tuple[float, float, int, float] | None,
-    strategy: FilledParameters,
-) -> list[Issue]:
-    """Return a note with heights and cusp, and the layers and the time saved.
-
-    Parameters
-    ----------
-    layers : sequence of Layer
-        The layers.
-    adapted : tuple of (float, float, int, float), or None
-        The result of `compare_heights`; None for layers of one height.
-    strategy : FilledParameters
-        The greatest layer height.
-
-    Returns
-    -------
-    list of Issue
-        The note; empty for layers of one height.
-    """
-    if adapted is None:
-        return []
-    cusp, height, constant_layers, seconds = adapted
-    heights = [layer.height for layer in layers if layer.height is not None]
-    return [
-        Issue(
-            NOTE,
-            "ADAPTED_HEIGHTS",
-            Text(
-                "{} layers are {:.3g} to {:.3g} mm high, with steps of at most {:.3g} mm normal to "
-                "the surface; {} layers of {:.3g} mm would have the same steps, and would take "
-                "{:.4g} min to deposit instead of {:.4g} min",
-                len(layers),
-                min(heights),
-                max(heights),
-                cusp,
-                constant_layers,
-                height,
-                seconds / 60.0,
-                sum(layer.deposit_time for layer in layers) / 60.0,
-            ),
-        )
-    ]
-
-
 # ---- Solids and closed mesh pieces without a layer cut: thinner than a layer, or between two cuts.
 # They count as deposited where beads of other solids cover them, such as a thin sheet below a thick
 # one.
@@ -665,11 +533,7 @@ class Uncut(NamedTuple):
 
 
 def uncut(
-    solids: SolidsOnHub,
-    strategy: FilledParameters,
-    ranked: Sequence[RankedBead],
-    width: float,
-    heights: Levels | None = None,
+    solids: SolidsOnHub, strategy: FilledParameters, ranked: Sequence[RankedBead], width: float
 ) -> list[Uncut]:
     """Return the pieces of solids without a layer cut that other beads do not cover.
 
@@ -685,8 +549,6 @@ def uncut(
         The beads.
     width : float
         Width of beads without a predicted width, mm.
-    heights : Levels or None, optional
-        Layers that adapt their heights; None for layers of one height.
 
     Returns
     -------
@@ -697,12 +559,12 @@ def uncut(
         return []
     missed = []
     for number, group in enumerate(solids.groups):
-        for solid in pulse_each(solid for body in group.bodies for solid in _pieces(body)):
+        for solid in (solid for body in group.bodies for solid in _pieces(body)):
             levels = _levels(group, solid.vertices[np.unique(solid.triangles)])
-            if _is_cut(float(levels.min()), float(levels.max()), strategy, heights):
+            if _is_cut(float(levels.min()), float(levels.max()), strategy):
                 continue
             group_beads = [bead for bead in ranked if bead.group == number]
-            missed_piece = _missed(group, solid, strategy, group_beads, width, heights)
+            missed_piece = _missed(group, solid, strategy, group_beads, width)
             if missed_piece.bare > LEAST_SHARE * missed_piece.volume:
                 missed.append(missed_piece)
     return missed
@@ -762,15 +624,12 @@ def _levels(group: Group, points: Array) -> Array:
     return surface.distance(inside)
 
 
-def _is_cut(low: float, high: float, strategy: FilledParameters, heights: Levels | None) -> bool:
+def _is_cut(low: float, high: float, strategy: FilledParameters) -> bool:
     """Whether a layer is cut between two levels, mm; as in `plane_field`, a cut in a face is moved aside."""
     aside = CLEARANCE_SHARE * strategy.chord_error
     share = strategy.share_of_cut
     if share == 1.0:  # at the top
         low, high = low + 2.0 * aside, high + 2.0 * aside
-    if heights is not None:
-        cuts = heights.cuts(share)
-        return bool(((cuts > low - aside) & (cuts < high - aside)).any())
     first_layer = max(0, int(np.ceil((low - aside) / strategy.layer_height - share - EXACT)))
     return (first_layer + share) * strategy.layer_height < high - aside
 
@@ -781,26 +640,19 @@ def _missed(
     strategy: FilledParameters,
     ranked: Sequence[RankedBead],
     width: float,
-    heights: Levels | None,
 ) -> Uncut:
     """Estimate the volume of a piece that no bead covers."""
     corners = body.vertices[np.unique(body.triangles)]
     points = _places_in(body, corners)
     levels = _levels(group, points)
-    if heights is None:
-        layer = np.floor(levels / strategy.layer_height + EXACT)
-    else:
-        layer = heights.layers_of(levels).astype(np.float64)
+    layer = np.floor(levels / strategy.layer_height + EXACT)
     covered = np.zeros(len(points), dtype=bool)
     reach = 0.5 * width / strategy.fill_density
     for number in np.unique(layer):
         beads = [bead.bead for bead in ranked if bead.layer == number]
         if beads:
             rows = np.flatnonzero(layer == number)
-            plane = (
-                number * strategy.layer_height if heights is None else heights.planes[int(number)]
-            )
-            rise = levels[rows] - plane
+            rise = levels[rows] - number * strategy.layer_height
             distance = cKDTree(_sample_beads(beads, width / STEPS)).query(points[rows])[0]
             covered[rows] = distance**2 - rise**2 <= reach**2 + (0.5 * width / STEPS) ** 2
     volume = abs(SolidMesh(body.vertices, np.asarray(body.triangles, dtype=np.intp)).volume)

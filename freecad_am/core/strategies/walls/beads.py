@@ -167,7 +167,7 @@ def notes(keyed_directions: list[tuple[int, Directions]]) -> list[Issue]:
         (
             "TURN_LIMITED",
             [directions_.spread for _, directions_ in keyed_directions],
-            "turns of the tool axis are spread along the bead, deviating by up to {:.3g} deg, to "
+            "tool axes are spread along the bead, by up to {:.3g} deg, to "
             "turn no faster than build_direction.max_turn",
         ),
     ):
@@ -425,9 +425,9 @@ def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
                 WARNING,
                 "TURN",
                 Text(
-                    "a band of {:g} % is too narrow: {} of {} layers turn by more than {:.3g} "
-                    "deg/mm{}, first layer {}, by up to {:.3g} deg/mm{}, and the robot slows down "
-                    "there; use a wider strategy.band to round the layers",
+                    "a band of {:g} % is too narrow: within the wall {} of {} layers turn by "
+                    "more than {:.3g} deg/mm{}, first layer {}, by up to {:.3g} deg/mm{}, and "
+                    "the robot slows down there; use a wider strategy.band to round the layers",
                     100.0 * strategy.band,
                     len(over),
                     len(rates),
@@ -435,7 +435,7 @@ def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
                     Word(corner_text),
                     over[0],
                     np.degrees(finite[1:].max()),
-                    Word(" outside corners" if corners else ""),
+                    Word(" elsewhere" if corners else ""),
                 ),
                 int(np.argmax(rates[1:])) + 1,
             )

@@ -22,7 +22,6 @@ from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
-from ...progress import Progress, silent
 from ...slicing.curve_points import sample_within_chord
 from ...slicing.fronts import layers as slicing
 from ...slicing.fronts.curve import Smoothing
@@ -31,6 +30,7 @@ from ...slicing.fronts.smooth import turn
 from ...toolpath import Bead, Layer, MotionRules, Toolpath
 from ...types import Array
 from .. import estimated_size
+from ..progress import Progress, silent
 from .beads import (
     BeadSettings,
     corner_notes,

@@ -15,7 +15,6 @@ from ...issues import NOTE, InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import SurfaceParameters
-from ...progress import Progress, silent
 from ...slicing.curve_points import sample_within_chord
 from ...slicing.first_layer import interpolate_polyline
 from ...slicing.tubes import constant_distance, iso_parameter, smooth_spacing
@@ -23,6 +22,7 @@ from ...slicing.tubes.smooth_spacing import WallLayer, local_distances
 from ...toolpath import Layer, MotionRules, Toolpath
 from ...types import Array, Mask
 from .. import estimated_size
+from ..progress import Progress, silent
 from .beads import (
     Along,
     BeadSettings,
