@@ -237,6 +237,22 @@ def test_cam_path_and_trajectory_are_objects_in_one_step(person, job):
         assert len(doc.Objects) == object_count
 
 
+def test_tolerances_take_no_expression(person, job):
+    object_count, panel = len(job.Document.Objects), opened(person)
+    person.choose(panel, "Kind", "Robot trajectory in this document")
+    for name, value, unit in (("Tolerance", "0.1 mm", "mm"), ("Turn", "2 deg", "°")):
+        field = person.field(panel, name)
+        assert not field.lineEdit().actions()  # no button that starts an expression
+        person.type(panel, name, "=1 + 1")
+        refused(person)
+        error = person.field(panel, "error").text()
+        assert "takes no expression" in error and name in error and error.endswith(unit)
+        person.type(panel, name, value)
+    assert len(job.Document.Objects) == object_count
+    person.press("Cancel")
+    person.panel_closed()
+
+
 def test_a_document_closed_meanwhile_is_told(person, job):
     panel = opened(person)
     App.newDocument("Other")  # FreeCAD 1.1 hides panels, which cover a view, where there is no view

@@ -87,13 +87,13 @@ class ExportPanel:
                 "moves"
             ),
         )
-        self.tolerance = QuantityField(0.1, "mm", tr("Tolerance"))
+        self.tolerance = QuantityField(0.1, "mm", tr("Tolerance"), can_follow=False)
         self.tolerance.box.setObjectName("Tolerance")
         self._help(
             self.tolerance.box,
             tr("Points are omitted while the path stays within this distance"),
         )
-        self.turn = QuantityField(2.0, "deg", tr("Turn"))
+        self.turn = QuantityField(2.0, "deg", tr("Turn"), can_follow=False)
         self.turn.box.setObjectName("Turn")
         self._help(
             self.turn.box,
